@@ -1,0 +1,28 @@
+"""Strict numerics for every test: floating-point errors raise, chance is fixed, pictures need no screen."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from hypothesis import settings
+
+# set before matplotlib is imported anywhere, and inherited by the commands that tests start
+os.environ["MPLBACKEND"] = "Agg"
+
+# The same examples on every run and machine: a failure in CI is a failure at home. No deadline: the first call of a
+# jitted function takes a second, the next a microsecond.
+settings.register_profile("painleve", derandomize=True, deadline=None, database=None)
+settings.load_profile("painleve")
+
+
+@pytest.fixture(autouse=True)
+def raise_on_floating_point_errors(request: pytest.FixtureRequest) -> Iterator[None]:
+    """NumPy's divisions by zero, overflows and invalid operations raise, unless the test is marked `allow_fp_errors`."""
+    if request.node.get_closest_marker("allow_fp_errors"):
+        yield
+    else:
+        with np.errstate(divide="raise", over="raise", invalid="raise"):
+            yield
