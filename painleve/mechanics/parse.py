@@ -2,13 +2,14 @@
 
 Text is cut into words first, and every number and name becomes a placeholder before Python's parser sees anything: its
 grammar then has nothing to act on but operators and parentheses, and a symbol may be called `lambda`. Work is bounded
-before it is done: every node carries a bound on the size of its numbers and powers, and every constant its enclosure in
-ball arithmetic, so that sympy meets no power tower, no division by zero and no constant whose sign it would have to hunt.
+before it is done: every node carries a bound on the size of its numbers and powers, and every constant its enclosure
+in ball arithmetic, so that sympy meets no power tower, no division by zero and no constant whose sign it must hunt.
 """
 
 from __future__ import annotations
 
 import ast
+import itertools
 import math
 import operator
 import re
@@ -96,7 +97,7 @@ def parse_expression(text: str, symbols: Mapping[str, sympy.Expr] = _NO_SYMBOLS,
 
     The functions are sin, cos, tan, cot, asin, acos, atan, atan2, sqrt, exp, log, abs, sinh, cosh and tanh. A declared
     symbol hides the constant of its name. Exponents are rational numbers. Raises InputError, with one line that begins
-    with `where`, on anything else: other syntax, undeclared names, values that are not real and finite, too long a text.
+    with `where`, on anything else: other syntax, undeclared names, values that are not real and finite, too much work.
     """
     try:
         if not isinstance(text, str):
@@ -156,7 +157,7 @@ def _shown(text: object, limit: int = 60) -> str:
     if not isinstance(text, str):
         return type(text).__name__
     shown = repr(text[: limit + 1])
-    return shown if len(text) <= limit else f"{repr(text[:limit])}..."
+    return shown if len(text) <= limit else f"{text[:limit]!r}..."
 
 
 def _one_line(where: str) -> str:
@@ -198,7 +199,7 @@ def _check_layout(words: list[_Word]) -> None:
         depth += (word.text == "(") - (word.text == ")")
         if depth > MAX_DEPTH:
             raise _Refused(f"the parentheses nest deeper than {MAX_DEPTH}")
-    for left, right in zip(words, words[1:], strict=False):
+    for left, right in itertools.pairwise(words):
         _check_neighbours(left, right)
 
 
@@ -241,8 +242,8 @@ class _Reader:
                 return self._node(node.operand)
             case ast.BinOp() if type(node.op) in _OPERATORS:
                 return _OPERATORS[type(node.op)](self._node(node.left), self._node(node.right))
-            case ast.Call(func=ast.Name()):
-                return self._call(self._word(node.func).text, node)
+            case ast.Call(func=ast.Name() as function):
+                return self._call(self._word(function).text, node)
         raise _Refused("only numbers, names, + - * / **, parentheses and function calls are allowed")
 
     def _word(self, node: ast.Name) -> _Word:
@@ -282,8 +283,8 @@ def _enclosed(expr: sympy.Expr) -> arb | None:
 
 def _number(text: str) -> _Node:
     """The exact rational number that a literal spells."""
-    mantissa, _, exponent = text.lower().partition("e")
-    if abs(int(exponent or 0)) > MAX_DECIMAL_EXPONENT:
+    exponent = text.lower().partition("e")[2] or "0"
+    if abs(int(exponent)) > MAX_DECIMAL_EXPONENT:
         raise _Refused(f"the number {_shown(text)} has an exponent beyond {MAX_DECIMAL_EXPONENT}")
     value = Fraction(text)
     size = value.numerator.bit_length() + value.denominator.bit_length()
