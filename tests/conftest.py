@@ -20,7 +20,7 @@ settings.load_profile("painleve")
 
 @pytest.fixture(autouse=True)
 def raise_on_floating_point_errors(request: pytest.FixtureRequest) -> Iterator[None]:
-    """NumPy's divisions by zero, overflows and invalid operations raise, unless the test is marked `allow_fp_errors`."""
+    """NumPy divisions by zero, overflows and invalid operations raise; the mark `allow_fp_errors` lets them pass."""
     if request.node.get_closest_marker("allow_fp_errors"):
         yield
     else:
