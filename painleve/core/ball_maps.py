@@ -19,7 +19,7 @@ _TINY = 1e-300  # keeps 0/0 away from the cube's centre; lost in rounding agains
 
 
 @jit
-def _inner_radius(radius, rows):
+def _inner_radius(radius: float, rows: int) -> float:
     """`radius` less a bound on the rounding errors, so that the stored point is in the closed ball exactly.
 
     The norms below carry at most `rows` + 12 roundings of relative size 2^-53. A component that rounds to a subnormal
@@ -47,14 +47,14 @@ def cube_to_ball(x: np.ndarray, radius: float, boundary_weight: int) -> None:
 
 
 @jit
-def _push_outwards(r):
+def _push_outwards(r: np.ndarray) -> None:
     """1 - |r| becomes its square, the sign stays."""
     for i in range(r.size):
         r[i] *= 2.0 - abs(r[i])
 
 
 @jit
-def _map_interval(row, radius, boundary_weight):
+def _map_interval(row: np.ndarray, radius: float, boundary_weight: int) -> None:
     for _ in range(boundary_weight):
         _push_outwards(row)
     for i in range(row.size):
@@ -62,7 +62,7 @@ def _map_interval(row, radius, boundary_weight):
 
 
 @jit
-def _map_cube(x, radius, boundary_weight):
+def _map_cube(x: np.ndarray, radius: float, boundary_weight: int) -> None:
     rows, columns = x.shape
     factor = np.zeros(columns)  # max |x_j| first, then p(max |x_j|), then the factor of the column
     squares = np.full(columns, _TINY)
@@ -79,7 +79,7 @@ def _map_cube(x, radius, boundary_weight):
 
 
 @jit
-def _accumulate(row, largest, squares):
+def _accumulate(row: np.ndarray, largest: np.ndarray, squares: np.ndarray) -> None:
     for i in range(row.size):
         size = abs(row[i])
         largest[i] = size if size > largest[i] else largest[i]
@@ -92,12 +92,12 @@ def uniforms_needed(rows: int, dimension: int) -> int:
 
 
 @jit
-def _uniforms_for_pair(dimension):
+def _uniforms_for_pair(dimension: int) -> int:
     return 1 if dimension == 1 else (dimension + 1) // 2 + 1
 
 
 @jit
-def _outer_share(u, dimension, share):
+def _outer_share(u: np.ndarray, dimension: int, share: np.ndarray) -> None:
     """1 - s^2, s the norm of two coordinates of a uniform point of the unit ball: P(1 - s^2 < t) = t^(dimension/2).
 
     A product of distribution functions is that of the largest, and the square of a uniform number has t^(1/2): so no
@@ -114,7 +114,7 @@ def _outer_share(u, dimension, share):
 
 
 @jit
-def _sine(t):
+def _sine(t: float) -> float:
     """Taylor, |t| <= pi/4: the remainder is below 5e-17. A call of the C library would not vectorise."""
     y = t * t
     p = -1.0 / 1307674368000.0
@@ -128,7 +128,7 @@ def _sine(t):
 
 
 @jit
-def _cosine(t):
+def _cosine(t: float) -> float:
     """Taylor, |t| <= pi/4: the remainder is below 3e-18."""
     y = t * t
     p = 1.0 / 20922789888000.0
@@ -143,7 +143,9 @@ def _cosine(t):
 
 
 @jit
-def _place_pair(turn, share, rest, radius, first, second):
+def _place_pair(
+    turn: np.ndarray, share: np.ndarray, rest: np.ndarray, radius: float, first: np.ndarray, second: np.ndarray
+) -> None:
     """Two coordinates in a uniform direction, with squared norm rest (1 - share); rest becomes what is left of it."""
     for i in range(turn.size):
         # The signs of h and a and the size of a are independent: four quadrants, and an angle (pi/2)|a| in each.
@@ -184,6 +186,6 @@ def uniform_ball(u: np.ndarray, x: np.ndarray, radius: float, dimension: int) ->
 
 
 @jit
-def _place_last(u, rest, radius, row):
+def _place_last(u: np.ndarray, rest: np.ndarray, radius: float, row: np.ndarray) -> None:
     for i in range(u.size):
         row[i] = (2.0 * u[i] - 1.0) * math.sqrt(rest[i]) * radius

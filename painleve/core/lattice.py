@@ -31,8 +31,8 @@ def kronecker_generators(dimension: int) -> np.ndarray:
 
 
 def kronecker_shifts(seed: int, dimension: int) -> np.ndarray:
-    """A random shift of the whole sequence (Cranley-Patterson rotation): the outputs of SplitMix64(seed)."""
-    return np.array([splitmix64(np.uint64(seed), j) for j in range(dimension)], dtype=np.uint64)
+    """A random shift of the whole sequence (Cranley-Patterson rotation): the outputs of SplitMix64(seed), seed >= 0."""
+    return np.array([splitmix64(seed, j) for j in range(dimension)], dtype=np.uint64)
 
 
 @jit

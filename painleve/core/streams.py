@@ -18,7 +18,7 @@ _ONE = np.uint64(0x3FF0000000000000)  # the bits of the double 1.0
 
 
 @jit
-def _mix64(z):
+def _mix64(z: np.uint64) -> np.uint64:
     z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
     return z ^ (z >> np.uint64(31))
