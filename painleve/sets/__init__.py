@@ -1,0 +1,20 @@
+"""Points, segments and clouds; excess and Hausdorff distance, with bounds that know their side."""
+
+from painleve.sets.bounds import Bounds, Side, largest
+from painleve.sets.hausdorff import Excess, Hausdorff, excess, excess_of_segment_from_profile, hausdorff
+from painleve.sets.shapes import Cloud, Points, Segment, Shape
+
+__all__ = [
+    "Bounds",
+    "Cloud",
+    "Excess",
+    "Hausdorff",
+    "Points",
+    "Segment",
+    "Shape",
+    "Side",
+    "excess",
+    "excess_of_segment_from_profile",
+    "hausdorff",
+    "largest",
+]
