@@ -23,6 +23,7 @@ import sympy
 from flint import arb, ctx, fmpq
 
 from painleve.errors import InputError
+from painleve.mechanics.balls import ball
 
 __all__ = ["exact_number", "parse_expression", "parse_number"]
 
@@ -147,8 +148,12 @@ def _checked_sympy_number(value: sympy.Expr, where: str) -> sympy.Expr:
         raise InputError(f"{_one_line(where)}: expected a number, but {_shown(str(value))} contains {names}")
     if value.has(sympy.Float):
         raise InputError(f"{_one_line(where)}: {_shown(str(value))} holds rounded numbers: give exact ones")
-    if value.has(sympy.nan, sympy.oo, -sympy.oo, sympy.zoo) or value.is_extended_real is False:
-        raise InputError(f"{_one_line(where)}: {_shown(str(value))} is not a real and finite number")
+    try:
+        known = ball(value, bits=_BITS).is_finite()
+    except TypeError as reason:
+        raise InputError(f"{_one_line(where)}: {_shown(str(value))} cannot be used: {_one_line(str(reason))}") from None
+    if not known:
+        raise InputError(f"{_one_line(where)}: {_shown(str(value))} is not known to be real and finite")
     return value
 
 
