@@ -41,7 +41,7 @@ lock: ## choose the locked versions anew after a change of the dependencies (nee
 
 clean: ## remove what make and the tools made, but not data/
 	rm -rf .venv build .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
-	find painleve studies tests notebooks -name __pycache__ -type d -prune -exec rm -rf {} +
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 build/notebooks/%.ipynb: notebooks/%.py $(STAMP)
 	@mkdir -p $(@D)
