@@ -33,31 +33,25 @@ def ball(expr: sympy.Expr, values: Mapping[sympy.Symbol, arb] = MappingProxyType
     infinities, functions beyond the elementary ones, symbolic exponents).
     """
     symbols = list(values)
-    return _compiled([], [expr], symbols, bits)([values[symbol] for symbol in symbols])[0]
+    function = make_ball_function([expr], symbols, bits=bits, as_written=True)
+    return function([values[symbol] for symbol in symbols])[0]
 
 
 def make_ball_function(
-    exprs: Sequence[sympy.Expr], args: Sequence[sympy.Symbol], *, bits: int = 128
+    exprs: Sequence[sympy.Expr], args: Sequence[sympy.Symbol], *, bits: int = 128, as_written: bool = False
 ) -> Callable[[Sequence[arb]], list[arb]]:
     """Compile expressions once, with common parts shared and constants evaluated, for many evaluations.
 
     The function takes one ball per symbol of `args` and returns one per expression. Compiling raises as `ball` does.
+    `as_written` shares equal sub-trees alone: sympy's search for common parts of sums and products rebuilds the trees,
+    and evaluates on the way what was left unevaluated.
     """
-    replacements, reduced = sympy.cse(list(exprs), order="none")
-    return _compiled(replacements, reduced, args, bits)
-
-
-def _compiled(
-    definitions: Sequence[tuple[sympy.Symbol, sympy.Expr]],
-    exprs: Sequence[sympy.Expr],
-    args: Sequence[sympy.Symbol],
-    bits: int,
-) -> Callable[[Sequence[arb]], list[arb]]:
+    definitions, reduced = ([], exprs) if as_written else sympy.cse(list(exprs), order="none")
     with ctx.workprec(bits):
         program = _Program(args)
         for symbol, part in definitions:
             program.define(symbol, part)
-        outputs = [program.compile(expr) for expr in exprs]
+        outputs = [program.compile(expr) for expr in reduced]
     return partial(_run, program.steps, program.registers, outputs, len(args), bits)
 
 

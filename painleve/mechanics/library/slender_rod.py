@@ -1,0 +1,75 @@
+"""The slender rod of the Painlevé paradox: its lower tip slides on a horizontal floor."""
+
+import sympy as sp
+
+from painleve.mechanics.scene import Coordinate, NamedState, Parameter, Scene, Segment, StateKey, make_scene
+
+SOURCE = "P. Painlevé, C. R. Acad. Sci. Paris 121 (1895) 112-115; L. Paoli, IFIP AICT 494 (2016), section 1"
+
+COORDINATES = (
+    Coordinate(name="x", unit="m", sentence="horizontal position of the centre"),
+    Coordinate(name="y", unit="m", sentence="height of the centre above the floor"),
+    Coordinate(name="theta", unit="rad", sentence="inclination; the tip is below and to the left of the centre",
+               latex=r"\theta"),
+)  # fmt: skip
+BODY = (
+    Parameter(name="m", unit="kg", sentence="mass", default="1"),
+    Parameter(name="l", unit="m", sentence="half length", default="1"),
+    Parameter(name="I", unit="kg m^2", sentence="moment of inertia about the centre", default="m*l**2/3"),
+)
+GRAVITY = Parameter(name="gravity", unit="m/s^2", sentence="acceleration of gravity", default="981/100",
+                    range="real", latex="g_0")  # fmt: skip
+KEYS = (
+    StateKey(name="theta", unit="rad", sentence="inclination"),
+    StateKey(name="slip", unit="m/s", sentence="tangential speed of the tip", default="-1"),
+    StateKey(name="omega", unit="rad/s", sentence="angular velocity", default="0"),
+)
+
+
+def make_rod(
+    *, name: str, sentence: str, friction_parameters: tuple[Parameter, ...], friction_coefficient: sp.Expr,
+    states: tuple[NamedState, ...],
+) -> Scene:  # fmt: skip
+    """A rod on a floor with the friction coefficient given as an expression in theta and its parameters."""
+    x, y, theta = (c.symbol for c in COORDINATES)
+    m, l, I, gravity = (p.symbol for p in (*BODY, GRAVITY))  # noqa: E741 (the field's letters)
+    slip, omega = KEYS[1].symbol, KEYS[2].symbol
+    u_x, u_y, u_theta = (c.velocity for c in COORDINATES)
+    return make_scene(
+        name=name,
+        sentence=sentence,
+        source=SOURCE,
+        coordinates=COORDINATES,
+        parameters=(*BODY, *friction_parameters, GRAVITY),
+        kinetic_energy=m * (u_x**2 + u_y**2) / 2 + I * u_theta**2 / 2,
+        potential=m * gravity * y,
+        constraint=l * sp.sin(theta) - y,
+        tangential_displacements=(x - l * sp.cos(theta),),
+        friction=Segment(minus=friction_coefficient, plus=friction_coefficient),
+        keys=KEYS,
+        placement={"x": sp.Integer(0), "y": l * sp.sin(theta), "theta": theta},
+        # With a spin the centre moves so that the tip's normal velocity is zero.
+        velocity={"x": slip - l * omega * sp.sin(theta), "y": l * omega * sp.cos(theta), "theta": omega},
+        states=states,
+    )
+
+
+MU = Parameter(name="mu", unit="1", sentence="Coulomb's coefficient of friction", default="1/2", range="nonnegative",
+               latex=r"\mu")  # fmt: skip
+
+SCENE = make_rod(
+    name="slender_rod",
+    sentence="slender rod whose lower tip slides on a floor with constant friction",
+    friction_parameters=(MU,),
+    friction_coefficient=MU.symbol,
+    states=(
+        NamedState(name="sliding", sentence="gamma > 0: ordinary sliding, nothing is indeterminate",
+                   keys={"theta": "atan(2)"}, parameters={"mu": "1/2"}),
+        NamedState(name="paradox", sentence="gamma < 0: slide or jump to sticking",
+                   keys={"theta": "atan(2)"}, parameters={"mu": "2"}),
+        NamedState(name="critical", sentence="gamma = 0 on the lower edge of the band of paradoxes",
+                   keys={"theta": "atan(3 - sqrt(5))"}, parameters={"mu": "2"}),
+        NamedState(name="double_zero", sentence="gamma = 0 at the least critical friction, where it touches zero",
+                   keys={"theta": "atan(2)"}, parameters={"mu": "4/3"}),
+    ),
+)  # fmt: skip

@@ -1,0 +1,268 @@
+"""A scene as data: coordinates, inertia, force, one unilateral constraint and its friction, all symbolic.
+
+Conventions (paper, section 1): g(q) <= 0 is admissible, n = -grad g/|grad g| points inward, M du = f dt + r.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Literal
+
+import sympy as sp
+
+from painleve.errors import InputError
+
+__all__ = ["Coordinate", "NamedState", "Parameter", "Scene", "Segment", "StateKey", "make_scene"]
+
+Range = Literal["positive", "nonnegative", "real"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Coordinate:
+    """A generalised coordinate; its velocity is the symbol `u_<name>`."""
+
+    name: str
+    unit: str
+    sentence: str
+    latex: str = ""
+
+    @property
+    def symbol(self) -> sp.Symbol:
+        return sp.Symbol(self.name, real=True)
+
+    @property
+    def velocity(self) -> sp.Symbol:
+        return sp.Symbol(f"u_{self.name}", real=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameter:
+    """A constant of the scene; `default` is an expression in the parameters before it."""
+
+    name: str
+    unit: str
+    sentence: str
+    default: str
+    range: Range = "positive"
+    latex: str = ""
+
+    @property
+    def symbol(self) -> sp.Symbol:
+        # No assumption but real: positivity is checked on numbers, and |.| must not be simplified away unproved.
+        return sp.Symbol(self.name, positive=True) if self.range == "positive" else sp.Symbol(self.name, real=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class StateKey:
+    """A natural quantity by which a user gives a state; exact expressions only. No default means it must be given."""
+
+    name: str
+    unit: str
+    sentence: str
+    default: str | None = None
+
+    @property
+    def symbol(self) -> sp.Symbol:
+        return sp.Symbol(self.name, real=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class NamedState:
+    """A state of the library: values of keys and parameters as exact expressions."""
+
+    name: str
+    sentence: str
+    keys: Mapping[str, str]
+    parameters: Mapping[str, str]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Segment:
+    """Planar friction section B(q) = [-minus, plus]; both ends are >= 0 and may depend on q."""
+
+    minus: sp.Expr
+    plus: sp.Expr
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Scene:
+    """A mechanical scene; build it with `make_scene`, which checks it.
+
+    `inertia` is M(q) (d x d); `force` is f(t, q, u) (d x 1), gyroscopic terms included; `constraint` is g(q);
+    `tangents` is H(q) (d x k); `placement`, `velocity` and `contact_parameters` say, in terms of the state keys
+    and the parameters, where the natural keys put q, u and those parameters that the contact fixes.
+    """
+
+    name: str
+    sentence: str
+    source: str
+    coordinates: tuple[Coordinate, ...]
+    parameters: tuple[Parameter, ...]
+    inertia: sp.ImmutableMatrix
+    force: sp.ImmutableMatrix
+    constraint: sp.Expr
+    tangents: sp.ImmutableMatrix
+    friction: Segment | None
+    keys: tuple[StateKey, ...]
+    placement: Mapping[str, sp.Expr]
+    velocity: Mapping[str, sp.Expr]
+    contact_parameters: Mapping[str, sp.Expr]
+    states: tuple[NamedState, ...] = field(default=())
+
+    @property
+    def q(self) -> tuple[sp.Symbol, ...]:
+        return tuple(c.symbol for c in self.coordinates)
+
+    @property
+    def u(self) -> tuple[sp.Symbol, ...]:
+        return tuple(c.velocity for c in self.coordinates)
+
+    @property
+    def p(self) -> tuple[sp.Symbol, ...]:
+        return tuple(p.symbol for p in self.parameters)
+
+    @property
+    def dimension(self) -> int:
+        return len(self.coordinates)
+
+    @property
+    def friction_dimension(self) -> int:
+        """k: 0 without friction, 1 in the plane."""
+        return self.tangents.shape[1]
+
+    def parameter(self, name: str) -> Parameter:
+        for parameter in self.parameters:
+            if parameter.name == name:
+                return parameter
+        known = ", ".join(p.name for p in self.parameters)
+        raise InputError(f"scene {self.name}: no parameter {name!r}; it has {known}")
+
+    def state(self, name: str) -> NamedState:
+        for state in self.states:
+            if state.name == name:
+                return state
+        known = ", ".join(s.name for s in self.states) or "none"
+        raise InputError(f"scene {self.name}: no state {name!r}; named states: {known}")
+
+
+def make_scene(
+    *,
+    name: str,
+    sentence: str,
+    source: str,
+    coordinates: Iterable[Coordinate],
+    parameters: Iterable[Parameter],
+    kinetic_energy: sp.Expr | None = None,
+    inertia: sp.MatrixBase | None = None,
+    potential: sp.Expr | None = None,
+    force: sp.MatrixBase | None = None,
+    constraint: sp.Expr,
+    tangential_displacements: Iterable[sp.Expr] = (),
+    friction: Segment | None = None,
+    keys: Iterable[StateKey] = (),
+    placement: Mapping[str, sp.Expr] | None = None,
+    velocity: Mapping[str, sp.Expr] | None = None,
+    contact_parameters: Mapping[str, sp.Expr] | None = None,
+    states: Iterable[NamedState] = (),
+) -> Scene:
+    """Check a scene and derive M, f and H from what describes it.
+
+    Give either the kinetic energy (a quadratic form in the velocities) or M, either a potential or the generalised
+    force without gyroscopic terms (default: no force); g, or minus the contact point's height; and one tangential
+    displacement of the contact point for each direction of friction.
+
+    Raises InputError that names the symbol or the shape at fault.
+    """
+    coordinates, parameters, keys = tuple(coordinates), tuple(parameters), tuple(keys)
+    _check_names(name, [c.name for c in coordinates] + [p.name for p in parameters])
+    q, u, p = ([c.symbol for c in coordinates], [c.velocity for c in coordinates], [s.symbol for s in parameters])
+    M = _inertia(name, kinetic_energy, inertia, q, u)
+    f = sp.ImmutableMatrix(_applied_force(name, potential, force, q) + gyroscopic_force(M, q, u))
+    displacements = list(tangential_displacements)
+    H = sp.ImmutableMatrix(len(q), len(displacements), lambda i, j: sp.diff(displacements[j], q[i]))
+    _check_friction(name, H, friction)
+    time = sp.Symbol("t", real=True)
+    _check_symbols(name, "M", M, [*q, *p])
+    _check_symbols(name, "f", f, [time, *q, *u, *p])
+    _check_symbols(name, "g", sp.Matrix([constraint]), [*q, *p])
+    _check_symbols(name, "H", H, [*q, *p])
+    if friction is not None:
+        _check_symbols(name, "the friction section", sp.Matrix([friction.minus, friction.plus]), [*q, *p])
+    if all(sp.diff(constraint, x) == 0 for x in q):
+        raise InputError(f"scene {name}: g does not depend on any coordinate; give a constraint g(q) <= 0")
+    given = [*(k.symbol for k in keys), *p]
+    rules = [placement or {}, velocity or {}, contact_parameters or {}]
+    for rule in rules:
+        _check_symbols(name, "a state key's rule", sp.Matrix(list(rule.values()) or [0]), given)
+    return Scene(
+        name=name, sentence=sentence, source=source, coordinates=coordinates, parameters=parameters, inertia=M,
+        force=f, constraint=sp.sympify(constraint), tangents=H, friction=friction, keys=keys,
+        placement=MappingProxyType(dict(rules[0])), velocity=MappingProxyType(dict(rules[1])),
+        contact_parameters=MappingProxyType(dict(rules[2])), states=tuple(states),
+    )  # fmt: skip
+
+
+def gyroscopic_force(M: sp.MatrixBase, q: list[sp.Symbol], u: list[sp.Symbol]) -> sp.Matrix:
+    """-(dM/dt u - grad_q(u.M u)/2): what Lagrange's equations put beside the applied force."""
+    velocity = sp.Matrix(u)
+    quadratic = (velocity.T * M * velocity)[0, 0]
+    rate = sum((M.diff(x) * v for x, v in zip(q, u, strict=True)), sp.zeros(*M.shape))
+    return sp.Matrix([sp.diff(quadratic, x) / 2 for x in q]) - rate * velocity
+
+
+def _inertia(
+    name: str, energy: sp.Expr | None, M: sp.MatrixBase | None, q: list[sp.Symbol], u: list[sp.Symbol]
+) -> sp.ImmutableMatrix:
+    if (energy is None) == (M is None):
+        raise InputError(f"scene {name}: give either the kinetic energy or the inertia matrix M")
+    if energy is not None:
+        M = sp.hessian(energy, u)
+        M = M.applyfunc(sp.expand)
+        remainder = sp.expand(energy - (sp.Matrix(u).T * M * sp.Matrix(u))[0, 0] / 2)
+        if sp.simplify(remainder) != 0:
+            raise InputError(f"scene {name}: the kinetic energy is not a quadratic form in the velocities "
+                             f"{', '.join(map(str, u))}; left over: {remainder}")  # fmt: skip
+    assert M is not None
+    if M.shape != (len(q), len(q)):
+        raise InputError(f"scene {name}: M has shape {M.shape}; {len(q)} coordinates need {(len(q), len(q))}")
+    skew = (M - M.T).applyfunc(sp.simplify)
+    if not skew.is_zero_matrix:
+        i, j = next((i, j) for i in range(len(q)) for j in range(len(q)) if skew[i, j] != 0)
+        raise InputError(f"scene {name}: M is not symmetric: M[{q[i]}, {q[j]}] = {M[i, j]} "
+                         f"but M[{q[j]}, {q[i]}] = {M[j, i]}")  # fmt: skip
+    return sp.ImmutableMatrix(M)
+
+
+def _applied_force(
+    name: str, potential: sp.Expr | None, force: sp.MatrixBase | None, q: list[sp.Symbol]
+) -> sp.Matrix:
+    if potential is not None and force is not None:
+        raise InputError(f"scene {name}: give a potential or a force, not both")
+    if force is not None and tuple(force.shape) != (len(q), 1):
+        raise InputError(f"scene {name}: the force has shape {tuple(force.shape)}; it needs {(len(q), 1)}")
+    if force is not None:
+        return sp.Matrix(force)
+    return sp.Matrix([-sp.diff(potential, x) if potential is not None else 0 for x in q])
+
+
+def _check_names(scene: str, names: list[str]) -> None:
+    twice = sorted({n for n in names if names.count(n) > 1})
+    if twice:
+        raise InputError(f"scene {scene}: {', '.join(twice)} is declared twice; every symbol needs a name of its own")
+
+
+def _check_friction(scene: str, H: sp.MatrixBase, friction: Segment | None) -> None:
+    k = H.shape[1]
+    if k not in (0, 1) or (k == 0) != (friction is None):
+        have = "no friction section" if friction is None else "a segment"
+        raise InputError(f"scene {scene}: {k} tangential displacements with {have}; "
+                         "a segment needs one displacement, no friction needs none")  # fmt: skip
+
+
+def _check_symbols(scene: str, where: str, expressions: sp.MatrixBase, declared: list[sp.Symbol]) -> None:
+    stray = sorted(str(s) for s in expressions.free_symbols - set(declared))
+    if stray:
+        known = ", ".join(map(str, declared))
+        raise InputError(f"scene {scene}: undeclared symbol {', '.join(stray)} in {where}; declared: {known}")

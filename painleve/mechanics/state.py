@@ -1,0 +1,175 @@
+"""An exact state (q, u-, parameters) at a tangential contact, built from natural keys and checked exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from types import MappingProxyType
+from typing import TypeAlias
+
+import sympy as sp
+
+from painleve.errors import InputError
+from painleve.mechanics.derive import derive
+from painleve.mechanics.parse import exact_number, parse_expression
+from painleve.mechanics.scene import Scene
+from painleve.mechanics.signs import Sign, exact_sign
+
+__all__ = ["Number", "State", "make_state", "resolve_parameters"]
+
+Number: TypeAlias = str | int | float | Fraction | sp.Expr
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class State:
+    """A configuration q in contact, g(q) = 0, with a tangential velocity, <u-, n> = 0; every number is exact."""
+
+    scene: Scene
+    label: str
+    parameters: Mapping[str, sp.Expr]
+    q: tuple[sp.Expr, ...]
+    u: tuple[sp.Expr, ...]
+
+    @property
+    def substitution(self) -> dict[sp.Symbol, sp.Expr]:
+        parameters = {p.symbol: self.parameters[p.name] for p in self.scene.parameters}
+        return parameters | dict(zip(self.scene.q, self.q, strict=True)) | dict(zip(self.scene.u, self.u, strict=True))
+
+    def exact(self, expression: sp.Expr) -> sp.Expr:
+        """The exact value of an expression in coordinates, velocities and parameters."""
+        return expression.xreplace(self.substitution)
+
+    def number(self, expression: sp.Expr) -> float:
+        """The value rounded to a float (from 30 digits, so that cancellation does not show)."""
+        return float(sp.N(self.exact(expression), 30, maxn=400))
+
+
+def make_state(
+    scene: Scene,
+    name: str | None = None,
+    *,
+    keys: Mapping[str, Number] | None = None,
+    parameters: Mapping[str, Number] | None = None,
+) -> State:
+    """The state of that name, or the one that the keys give, with parameters overridden.
+
+    Keys are the scene's natural ones; `<coordinate>` and `u_<coordinate>` override single components.
+    Values are exact: text such as "atan(2)", integers, fractions, sympy numbers; a float means the decimal it prints.
+
+    Raises InputError for unknown keys or parameters, for values out of range, and for a state that is not exactly in
+    contact with a tangential velocity; the message says by how much.
+    """
+    named = scene.state(name) if name is not None else None
+    given = dict(named.keys if named else {}) | dict(keys or {})
+    values, components = _sort_keys(scene, given)
+    table = resolve_parameters(scene, dict(named.parameters if named else {}) | dict(parameters or {}), values)
+    point = values | {p.symbol: table[p.name] for p in scene.parameters}
+    q = _components(scene, {c.name: c.name for c in scene.coordinates}, scene.placement, point, components)
+    u = _components(scene, {c.name: f"u_{c.name}" for c in scene.coordinates}, scene.velocity, point, components)
+    state = State(scene=scene, label=_label(name, keys, parameters), parameters=MappingProxyType(table), q=q, u=u)
+    _check(state)
+    return state
+
+
+def resolve_parameters(
+    scene: Scene, given: Mapping[str, Number], keys: Mapping[sp.Symbol, sp.Expr] | None = None
+) -> dict[str, sp.Expr]:
+    """Exact values of all parameters: given, else fixed by the contact, else the default. Raises InputError."""
+    for name in given:
+        scene.parameter(name)
+    table: dict[str, sp.Expr] = {}
+    late = {} if keys is None else scene.contact_parameters
+    for parameter in scene.parameters:
+        if parameter.name in given:
+            table[parameter.name] = exact_number(given[parameter.name], where=f"parameter {parameter.name}")
+        elif parameter.name not in late:
+            earlier = {p.name: table[p.name] for p in scene.parameters if p.name in table}
+            table[parameter.name] = parse_expression(parameter.default, earlier, where=f"default of {parameter.name}")
+    for name, rule in late.items():
+        if name not in table:
+            point = dict(keys or {}) | {p.symbol: table[p.name] for p in scene.parameters if p.name in table}
+            table[name] = rule.xreplace(point)
+    for parameter in scene.parameters:
+        _check_range(scene, parameter.name, parameter.range, table[parameter.name])
+    return {p.name: table[p.name] for p in scene.parameters}
+
+
+def _sort_keys(scene: Scene, given: Mapping[str, Number]) -> tuple[dict[sp.Symbol, sp.Expr], dict[str, sp.Expr]]:
+    """Natural keys by symbol, with defaults; and raw components by name."""
+    raw = {c.name for c in scene.coordinates} | {f"u_{c.name}" for c in scene.coordinates}
+    natural = {k.name: k for k in scene.keys}
+    for name in given:
+        if name not in natural and name not in raw:
+            raise InputError(f"scene {scene.name}: no state key {name!r}; keys: {', '.join(natural)}; "
+                             f"single components: {', '.join(sorted(raw - set(natural)))}")  # fmt: skip
+    exact = {name: exact_number(value, where=f"state key {name}") for name, value in given.items()}
+    values = {}
+    for name, key in natural.items():
+        if name in exact:
+            values[key.symbol] = exact[name]
+        elif key.default is not None:
+            values[key.symbol] = parse_expression(key.default, {}, where=f"default of {name}")
+        else:
+            raise InputError(f"scene {scene.name}: the state needs {name} ({key.sentence}, {key.unit}); "
+                             f"give {name}=EXPRESSION or a named state: "
+                             f"{', '.join(s.name for s in scene.states) or 'none'}")  # fmt: skip
+    return values, {name: value for name, value in exact.items() if name in raw and name not in natural}
+
+
+def _components(
+    scene: Scene, keys: Mapping[str, str], rules: Mapping[str, sp.Expr], point: Mapping[sp.Symbol, sp.Expr],
+    given: Mapping[str, sp.Expr],
+) -> tuple[sp.Expr, ...]:  # fmt: skip
+    values = []
+    for coordinate, key in keys.items():
+        value = given[key] if key in given else rules.get(coordinate, sp.Integer(0)).xreplace(dict(point))
+        if not (value.is_number and value.is_finite is not False) or value.has(sp.zoo, sp.nan, sp.oo):
+            raise InputError(f"scene {scene.name}: {key} is not finite at this state; give other keys")
+        values.append(value)
+    return tuple(values)
+
+
+def _label(name: str | None, keys: Mapping[str, Number] | None, parameters: Mapping[str, Number] | None) -> str:
+    parts = ([name] if name else []) + [f"{k}={v}" for k, v in {**(keys or {}), **(parameters or {})}.items()]
+    return " ".join(parts)
+
+
+def _check_range(scene: Scene, name: str, range_: str, value: sp.Expr) -> None:
+    if range_ == "real":
+        return
+    sign = exact_sign(value).sign
+    allowed = {Sign.POSITIVE} if range_ == "positive" else {Sign.POSITIVE, Sign.ZERO}
+    if sign not in allowed:
+        wanted = "positive" if range_ == "positive" else "zero or positive"
+        raise InputError(f"scene {scene.name}: parameter {name} = {value} must be {wanted}")
+
+
+def _check(state: State) -> None:
+    """The state is in contact, tangential, and the scene is sound there."""
+    scene, d = state.scene, derive(state.scene)
+    where = f"scene {scene.name}, state {state.label or 'given'}"
+    M = state.exact(scene.inertia)
+    for size in range(1, scene.dimension + 1):
+        if exact_sign(M[:size, :size].det(method="berkowitz")).sign is not Sign.POSITIVE:
+            raise InputError(f"{where}: M is not positive definite there; choose another configuration")
+    if exact_sign(state.exact(d.gradient_squared)).sign is not Sign.POSITIVE:
+        raise InputError(f"{where}: grad g vanishes there; choose another configuration")
+    if scene.friction is not None:
+        for end in (scene.friction.minus, scene.friction.plus):
+            if exact_sign(state.exact(end)).sign not in (Sign.POSITIVE, Sign.ZERO):
+                raise InputError(f"{where}: the coefficient of friction is {state.number(end):.6g} there; "
+                                 "it must be zero or positive")  # fmt: skip
+    _check_zero(where, "g(q)", state.exact(scene.constraint), "the state is off the constraint")
+    v_n = (d.normal.T * sp.Matrix(scene.u))[0, 0]
+    _check_zero(where, "<u-, -grad g(q)>", state.exact(v_n), "the velocity is not tangential")
+
+
+def _check_zero(where: str, what: str, value: sp.Expr, meaning: str) -> None:
+    signed = exact_sign(value)
+    if signed.sign is Sign.ZERO:
+        return
+    if signed.sign is Sign.UNDECIDED:
+        raise InputError(f"{where}: whether {what} is exactly zero is undecided ({signed.reason}); "
+                         "give simpler numbers")  # fmt: skip
+    raise InputError(f"{where}: {meaning}: {what} = {signed.value:.6g} and must be exactly 0")
