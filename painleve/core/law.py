@@ -1,0 +1,82 @@
+"""Moreau's contact law S in contact coordinates, one point at a time (the project's notes, section 2).
+
+With G = [[a, b], [b, C]] and the contact velocity (v_n, v_t), v_n < 0, the feasible impulses (1, s) lambda that
+cancel the normal velocity form an interval of the line a r_n + b r_t = -v_n. The kinetic energy restricted to that
+line is a parabola with its least value at the sticking impulse, so S is a clamp: this holds for every sign of gamma.
+"""
+
+import math
+
+from painleve._jit import jit
+from painleve.core.codes import Branch
+
+FREE, STICK, SLIP_PLUS, SLIP_MINUS = (int(b) for b in (Branch.FREE, Branch.STICK, Branch.SLIP_PLUS, Branch.SLIP_MINUS))
+FRICTIONLESS = int(Branch.FRICTIONLESS)
+
+
+@jit
+def stick_impulse(a, b, C, v_n, v_t):
+    """The impulse -G^-1 v_c that stops the tip."""
+    determinant = a * C - b * b
+    return (b * v_t - C * v_n) / determinant, (b * v_n - a * v_t) / determinant
+
+
+@jit
+def slip_multiplier(edge, v_n):
+    """lambda = -v_n/edge on an edge of the cone; infinite where that edge cannot lift the tip (edge <= 0)."""
+    return -v_n / edge if edge > 0.0 else math.inf
+
+
+@jit
+def planar_branch(edge_plus, edge_minus, mu_plus, mu_minus, v_n, stick_t):
+    """Which branch S takes at a contact with v_n < 0: the sticking impulse is clamped to the cone."""
+    # Written without 0 * inf: an edge that cannot lift never binds.
+    if edge_plus > 0.0 and stick_t * edge_plus > -mu_plus * v_n:
+        return SLIP_PLUS
+    if edge_minus > 0.0 and -stick_t * edge_minus > -mu_minus * v_n:
+        return SLIP_MINUS
+    return STICK
+
+
+@jit
+def planar_impulse(a, b, C, edge_plus, edge_minus, mu_plus, mu_minus, v_n, v_t):
+    """(r_n, r_t, branch) of the planar law with the section [-mu_minus, mu_plus]; no impulse where v_n >= 0."""
+    if v_n >= 0.0:
+        return 0.0, 0.0, FREE
+    stick_n, stick_t = stick_impulse(a, b, C, v_n, v_t)
+    branch = planar_branch(edge_plus, edge_minus, mu_plus, mu_minus, v_n, stick_t)
+    if branch == SLIP_PLUS:
+        r_n = -v_n / edge_plus
+        return r_n, mu_plus * r_n, branch
+    if branch == SLIP_MINUS:
+        r_n = -v_n / edge_minus
+        return r_n, -mu_minus * r_n, branch
+    return stick_n, stick_t, branch
+
+
+@jit
+def law_from_rows(rows, dimension, planar, v, result):
+    """S(q, v) into `result` from the scene's rows at q (layout: painleve.kernels.rows); returns the branch."""
+    d = dimension
+    v_n = 0.0
+    for j in range(d):
+        v_n += rows[1 + j] * v[j]
+        result[j] = v[j]
+    if rows[0] < 0.0 or v_n >= 0.0:
+        return FREE
+    a = rows[1 + 2 * d]
+    if not planar:
+        for j in range(d):
+            result[j] -= rows[1 + d + j] * v_n / a
+        return FRICTIONLESS
+    rest = 3 + 2 * d
+    v_t = 0.0
+    for j in range(d):
+        v_t += rows[rest + j] * v[j]
+    tail = rest + 2 * d
+    r_n, r_t, branch = planar_impulse(
+        a, rows[tail], rows[tail + 1], rows[2 + 2 * d], rows[tail + 2], rows[tail + 3], rows[tail + 4], v_n, v_t
+    )
+    for j in range(d):
+        result[j] += rows[1 + d + j] * r_n + rows[rest + d + j] * r_t
+    return branch

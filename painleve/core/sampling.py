@@ -1,0 +1,66 @@
+"""Blocks of samples of the two balls, addressed by index: offsets of the shape coordinates and of the velocity.
+
+Only the shape coordinates are sampled, those on which the law depends. The coordinates that merely carry the contact
+enter through `room`, what they add to g at the sample. A sample of A_eps may choose them: the low-discrepancy points
+take the greatest room that the ball leaves, so that each is in contact wherever some q of the ball with this shape is;
+uniform points draw the one combination of them that matters.
+"""
+
+import math
+from enum import IntEnum
+
+from painleve._jit import jit
+from painleve.core.ball_maps import cube_to_ball, uniform_ball
+from painleve.core.lattice import kronecker_block
+from painleve.core.streams import uniform_block
+
+__all__ = ["BLOCK", "Sampler", "sample_block"]
+
+BLOCK = 512  # samples; some twenty arrays of this length stay in the second-level cache
+
+
+class Sampler(IntEnum):
+    """How the two balls are covered."""
+
+    UNIFORM = 0  # independent and uniform in both balls
+    KRONECKER = 1  # low discrepancy, from the centres outwards
+    BOUNDARY = 2  # low discrepancy, weighted towards both spheres
+
+
+UNIFORM = int(Sampler.UNIFORM)
+BOUNDARY = int(Sampler.BOUNDARY)
+BOUNDARY_WEIGHT = 2  # 1 - r becomes (1 - r)^4: half of the samples are within 7% of the sphere
+
+
+@jit
+def sample_block(
+    sampler, seed, start, alphas, shifts, eps, carried, dimension, q_uniforms, uniforms, q_rows, x, dv, room
+):
+    """Fill one block: dq in the first rows of `x`, dv, and `room`.
+
+    `x` has the q_rows shape offsets and below them, for the low-discrepancy samplers, the d rows that `dv` views; for
+    the uniform one, a row for the carried combination if `carried` > 0, the norm of dg/d(carried coordinates). The
+    first `q_uniforms` rows of `uniforms` serve q, the rest v.
+    """
+    if sampler == UNIFORM:
+        uniform_block(seed, start, uniforms)
+        in_q = q_rows + (1 if carried > 0.0 else 0)
+        if in_q > 0:
+            uniform_ball(uniforms[:q_uniforms], x[:in_q], eps, dimension)
+        uniform_ball(uniforms[q_uniforms:], dv, eps, dimension)
+        for i in range(room.size):
+            room[i] = carried * x[q_rows, i] if carried > 0.0 else 0.0
+        return
+    kronecker_block(start, alphas, shifts, x)
+    weight = BOUNDARY_WEIGHT if sampler == BOUNDARY else 0
+    if q_rows > 0:
+        cube_to_ball(x[:q_rows], eps, weight)
+    cube_to_ball(dv, eps, weight)
+    room[:] = 0.0
+    if carried > 0.0:
+        for j in range(q_rows):
+            row = x[j]
+            for i in range(room.size):
+                room[i] += (row[i] / eps) * (row[i] / eps)
+        for i in range(room.size):
+            room[i] = carried * eps * math.sqrt(max(0.0, 1.0 - room[i]))

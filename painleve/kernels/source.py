@@ -1,0 +1,260 @@
+"""Write a scene's kernels as readable Python source: common subexpressions shared, only what the scene has.
+
+The file holds `rows_at` (every row at a configuration), `varying_block` (the rows that vary, by plain evaluation,
+minus their base values: the thing to compare with), `law_block` (S relative to the limit set through a block), and
+`offset_block` and `sample_lane`, which drive the stages.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import sympy as sp
+from sympy.printing.pycode import PythonCodePrinter
+
+from painleve.kernels.rows import Rows
+from painleve.mechanics.scene import Scene
+
+__all__ = ["scene_source"]
+
+HEADER = '''"""Kernels of the scene {name}, written by painleve from its derivation; edits are lost.
+
+Rows: {rows}
+Varying: {varying}
+"""
+
+import math
+
+import numpy as np
+
+from painleve._jit import jit
+from painleve.core.law import FREE, FRICTIONLESS, law_from_rows
+from painleve.core.offset import planar_split
+from painleve.core.reduce import reduce_block
+from painleve.core.sampling import BLOCK, UNIFORM, sample_block
+from painleve.core.taylor import monomial_block, polynomial_block
+
+'''
+
+# The same for every scene, but compiled with it: a compiled function that is passed as an argument is compiled anew
+# in every process.
+LANE = '''@jit
+def offset_block(sampler, seed, start, alphas, shifts, eps, carried, q_uniforms, taylor, parents, factors, coefficients,
+                 q, p, base, u, direction, length, impulse, multiplier, critical_edge,
+                 x, dv, room, uniforms, monomials, values, branch, along, beyond, across2):
+    """Samples start ... start + BLOCK - 1 through all stages."""
+    dimension, q_rows = {dimension}, {shape}
+    sample_block(sampler, seed, start, alphas, shifts, eps, carried, dimension, q_uniforms, uniforms, q_rows,
+                 x, dv, room)
+    if taylor:
+        monomial_block(parents, factors, x, monomials)
+        polynomial_block(coefficients, monomials, values)
+    else:
+        varying_block(x, q, p, base, values)
+    law_block(values, room, dv, base, u, direction, length, impulse, multiplier, critical_edge,
+              branch, along, beyond, across2)
+
+
+@jit
+def sample_lane(first, blocks, samples, sampler, seed, alphas, shifts, eps, carried, q_uniforms, taylor, parents, factors,
+                coefficients, q, p, base, u, direction, length, impulse, multiplier, critical_edge, kind,
+                uniform_rows, counts, best, best_index, bins, bin_index):
+    """Run `blocks` blocks from block `first` and fold them into this lane's state."""
+    dimension, q_rows = {dimension}, {shape}
+    rows = q_rows + (1 if sampler == UNIFORM else dimension)
+    x = np.empty((rows, BLOCK))
+    dv = np.empty((dimension, BLOCK)) if sampler == UNIFORM else x[q_rows:]
+    room, uniforms = np.empty(BLOCK), np.empty((uniform_rows, BLOCK))
+    monomials, values = np.empty((parents.size, BLOCK)), np.empty(({varying_count}, BLOCK))
+    branch = np.empty(BLOCK, np.int64)
+    along, beyond, across2 = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
+    for block in range(first, first + blocks):
+        start = block * BLOCK
+        offset_block(sampler, seed, start, alphas, shifts, eps, carried, q_uniforms, taylor, parents, factors,
+                     coefficients, q, p, base, u, direction, length, impulse, multiplier, critical_edge,
+                     x, dv, room, uniforms, monomials, values, branch, along, beyond, across2)
+        reduce_block(kind, length, start, min(BLOCK, samples - start), branch, along, beyond, across2,
+                     counts, best, best_index, bins, bin_index)
+
+
+@jit
+def law_at(q, p, v, result):
+    """S(q, v) by plain evaluation; returns the branch."""
+    rows = np.empty({row_count})
+    rows_at(q, p, rows)
+    return law_from_rows(rows, {dimension}, {planar}, v, result)
+'''
+
+
+class _Printer(PythonCodePrinter):
+    """Small integer powers become products, which vectorise and round once per factor."""
+
+    def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
+        base, exponent = expr.args
+        if exponent.is_Integer and 1 < abs(int(exponent)) <= 4:
+            factor = self.parenthesize(base, 100)
+            product = "*".join([factor] * abs(int(exponent)))
+            return f"({product})" if exponent > 0 else f"(1.0/({product}))"
+        return super()._print_Pow(expr, rational=rational)
+
+    def _print_Rational(self, expr: sp.Rational) -> str:
+        return f"({expr.p}.0/{expr.q}.0)"
+
+    def _print_Integer(self, expr: sp.Integer) -> str:
+        return f"{int(expr)}.0"
+
+
+_PRINTER = _Printer({"fully_qualified_modules": True})
+
+
+def scene_source(scene: Scene, rows: Rows, shape: Sequence[int]) -> str:
+    """The source text of a scene's kernels."""
+    varying = ", ".join(rows.names[r] for r in rows.varying) or "none"
+    header = HEADER.format(name=scene.name, rows=", ".join(rows.names), varying=varying)
+    lane = LANE.format(dimension=scene.dimension, shape=len(shape), varying_count=len(rows.varying),
+                       row_count=len(rows.names), planar=scene.friction is not None)  # fmt: skip
+    parts = [_rows_at(scene, rows), _varying_block(scene, rows, shape), _law_block(scene, rows), lane]
+    return header + "\n\n".join(parts)
+
+
+def _indent(lines: Iterable[str], depth: int) -> str:
+    return "".join(" " * 4 * depth + line + "\n" for line in lines)
+
+
+def _assignments(expressions: Sequence[sp.Expr], targets: Sequence[str]) -> list[str]:
+    shared, reduced = sp.cse(list(expressions), symbols=sp.numbered_symbols("c", real=True))
+    lines = [f"{symbol} = {_PRINTER.doprint(expression)}" for symbol, expression in shared]
+    return lines + [f"{t} = {_PRINTER.doprint(e)}" for t, e in zip(targets, reduced, strict=True)]
+
+
+def _renamed(scene: Scene) -> tuple[dict[sp.Symbol, sp.Symbol], list[str], list[str]]:
+    """Coordinates and parameters under names that clash with nothing: q_<name>, p_<name>."""
+    q = {c.symbol: sp.Symbol(f"q_{c.name}", real=True) for c in scene.coordinates}
+    p = {s.symbol: sp.Symbol(f"p_{s.name}", real=True) for s in scene.parameters}
+    return q | p, [str(s) for s in q.values()], [str(s) for s in p.values()]
+
+
+def _used(names: Sequence[str], expressions: Iterable[sp.Expr]) -> list[tuple[int, str]]:
+    free = {str(s) for e in expressions for s in e.free_symbols}
+    return [(i, n) for i, n in enumerate(names) if n in free]
+
+
+def _rows_at(scene: Scene, rows: Rows) -> str:
+    names, q, p = _renamed(scene)
+    expressions = [e.xreplace(names) for e in rows.expressions]
+    lines = [f"{n} = q[{i}]" for i, n in _used(q, expressions)] + [f"{n} = p[{i}]" for i, n in _used(p, expressions)]
+    lines += _assignments(expressions, [f"rows[{r}]" for r in range(len(expressions))])
+    return "@jit\ndef rows_at(q, p, rows):\n" + _indent(lines, 1)
+
+
+def _varying_block(scene: Scene, rows: Rows, shape: Sequence[int]) -> str:
+    names, q, p = _renamed(scene)
+    expressions = [rows.expressions[r].xreplace(names) for r in rows.varying]
+    moving = [q[i] for i in shape]
+    before = [f"{n} = q[{i}]" for i, n in _used(q, expressions) if n not in moving]
+    before += [f"{n} = p[{i}]" for i, n in _used(p, expressions)]
+    inside = [f"{q[i]} = q[{i}] + dq[{j}, i]" for j, i in enumerate(shape)]
+    inside += _assignments(expressions, [f"row_{k}" for k in range(len(expressions))])
+    inside += [f"values[{k}, i] = row_{k} - base[{r}]" for k, r in enumerate(rows.varying)]
+    body = _indent(before, 1) + "    for i in range(values.shape[1]):\n" + _indent(inside, 2)
+    if not rows.varying:
+        body = "    return\n"
+    return "@jit\ndef varying_block(dq, q, p, base, values):\n" + body
+
+
+class _Names:
+    """How a row's value and its difference from the base are written in the law's loop."""
+
+    def __init__(self, rows: Rows) -> None:
+        self.rows = rows
+        self.slot = {r: k for k, r in enumerate(rows.varying)}
+
+    def is_zero(self, name: str) -> bool:
+        return self.rows.expressions[self.rows.index(name)] == 0
+
+    def difference(self, name: str) -> str | None:
+        r = self.rows.index(name)
+        return f"d_{name}" if r in self.slot else None
+
+    def difference_or_zero(self, name: str) -> str:
+        return self.difference(name) or "0.0"
+
+    def loads(self) -> list[str]:
+        lines = []
+        for r, k in self.slot.items():
+            name = self.rows.names[r]
+            lines += [f"d_{name} = values[{k}, i]", f"{name} = base_{name} + d_{name}"]
+        return lines
+
+    def hoisted(self) -> list[str]:
+        return [
+            f"base_{n} = base[{r}]" if r in self.slot else f"{n} = base[{r}]"
+            for r, n in enumerate(self.rows.names)
+            if self.rows.expressions[r] != 0
+        ]
+
+
+def _sum(terms: Iterable[str]) -> str:
+    return " + ".join(terms) or "0.0"
+
+
+def _velocity_difference(names: _Names, prefix: str, axes: Sequence[str]) -> str:
+    """w . v - w_base . u- as sum of dw u- and w dv: no difference of large numbers."""
+    terms = []
+    for j, x in enumerate(axes):
+        name = f"{prefix}_{x}"
+        if names.difference(name):
+            terms.append(f"d_{name}*u_{j}")
+        if not names.is_zero(name):
+            terms.append(f"{name}*dv_{j}")
+    return _sum(terms)
+
+
+def _law_block(scene: Scene, rows: Rows) -> str:
+    axes = [c.name for c in scene.coordinates]
+    names = _Names(rows)
+    before = [f"u_{j} = u[{j}]" for j in range(len(axes))] + [f"k_{j} = direction[{j}]" for j in range(len(axes))]
+    before += names.hoisted()
+    inside = [f"dv_{j} = dv[{j}, i]" for j in range(len(axes))] + names.loads()
+    inside.append(f"v_n = {_velocity_difference(names, 'w', axes)}")
+    inside.append(f"hit = v_n < 0.0 and {names.difference_or_zero('g')} + room[i] >= 0.0")
+    inside += _planar_lines(names, axes) if scene.friction is not None else _frictionless_lines(names, axes)
+    inside.append("dot = " + _sum(f"z_{j}*k_{j}" for j in range(len(axes))))
+    inside += [f"z_{j} -= dot*k_{j}" for j in range(len(axes))]
+    inside += [
+        "branch[i] = code",
+        "along[i] = dot + tau*length",
+        "beyond[i] = dot + (tau - 1.0)*length",
+        "across2[i] = " + _sum(f"z_{j}*z_{j}" for j in range(len(axes))),
+    ]
+    signature = (
+        "@jit\ndef law_block(values, room, dv, base, u, direction, length, impulse, multiplier, critical_edge,\n"
+        "              branch, along, beyond, across2):\n"
+    )
+    loop = "    for i in range(branch.size):\n" + _indent(inside, 2)
+    return signature + "    base_n, base_t = impulse[0], impulse[1]\n" + _indent(before, 1) + loop
+
+
+def _planar_lines(names: _Names, axes: Sequence[str]) -> list[str]:
+    differences = ", ".join(names.difference_or_zero(n) for n in ("a", "b", "C", "mu_plus", "mu_minus"))
+    lines = [
+        f"dv_t = {_velocity_difference(names, 'H', axes)}",
+        "code, tau, e_n, e_t = planar_split(",
+        f"    hit, a, b, C, edge_plus, edge_minus, mu_plus, mu_minus, {differences},",
+        "    v_n, dv_t, base_n, base_t, multiplier, critical_edge)",
+    ]
+    for j, x in enumerate(axes):
+        terms = [f"dv_{j}"]
+        moved = [f"d_{y}_{x}*base_{i}" for y, i in (("Yn", "n"), ("Yt", "t")) if names.difference(f"{y}_{x}")]
+        if moved:
+            terms.append(f"tau*({_sum(moved)})")
+        terms += [f"{y}_{x}*e_{i}" for y, i in (("Yn", "n"), ("Yt", "t")) if not names.is_zero(f"{y}_{x}")]
+        lines.append(f"z_{j} = {_sum(terms)}")
+    return lines
+
+
+def _frictionless_lines(names: _Names, axes: Sequence[str]) -> list[str]:
+    lines = ["code = FRICTIONLESS if hit else FREE", "tau = 0.0", "e_n = -v_n/a if hit else 0.0"]
+    for j, x in enumerate(axes):
+        lines.append(f"z_{j} = dv_{j}" + ("" if names.is_zero(f"Yn_{x}") else f" + Yn_{x}*e_n"))
+    return lines
