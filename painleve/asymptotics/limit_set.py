@@ -1,0 +1,123 @@
+"""The limit set A(q, u-) at a tangential contact, exactly (paper, section 3; the project's notes, section 3)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+import sympy as sp
+
+from painleve import sets
+from painleve.mechanics.derive import derive
+from painleve.mechanics.signs import Sign, Signed, exact_sign
+from painleve.mechanics.state import State
+
+__all__ = ["Edge", "LimitSet", "limit_set"]
+
+Kind = Literal["point", "pair", "segment", "undecided"]
+Edge = Literal[-1, 0, 1]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LimitSet:
+    """A(q, u-): the point {u-}, the pair {u-, u_tilde} or the segment between them, with exact ends.
+
+    `gamma` is the sign of gamma(q), `multiplier` the normal impulse of the jump from u- to u_tilde (0 if there is none)
+    and `tangential` its friction impulse. `edge` says on which edge s = +mu_plus or -mu_minus of the cone gamma is
+    attained; 0 if gamma > 0 or there is no friction.
+    """
+
+    state: State
+    kind: Kind
+    gamma: Signed
+    gamma_value: float
+    edge: Edge
+    multiplier: sp.Expr
+    tangential: sp.Expr
+    u_tilde: tuple[sp.Expr, ...]
+    reason: str
+
+    @property
+    def critical(self) -> bool:
+        """gamma = 0 at q, and there is a jump."""
+        return self.gamma.sign is Sign.ZERO and self.kind != "point"
+
+    @property
+    def ends(self) -> LimitSet:
+        """{u-, u_tilde} alone: what A_eps tends to at an isolated critical state."""
+        return replace(self, kind="pair", reason="the ends of A") if self.kind == "segment" else self
+
+    @property
+    def u_minus(self) -> np.ndarray:
+        """(d,) floats."""
+        return np.array([self.state.number(x) for x in self.state.u])
+
+    @property
+    def u_plus(self) -> np.ndarray:
+        """(d,) floats of u_tilde."""
+        return np.array([self.state.number(x) for x in self.u_tilde])
+
+    @property
+    def jump(self) -> np.ndarray:
+        """(d,) floats of u_tilde - u-, formed exactly first."""
+        pairs = zip(self.u_tilde, self.state.u, strict=True)
+        return np.array([self.state.number(x - y) for x, y in pairs])
+
+    @property
+    def shape(self) -> sets.Points | sets.Segment:
+        """A as a set of the plane of velocities, to rounding. Raises ValueError where A is undecided."""
+        if self.kind == "undecided":
+            raise ValueError(f"A is undecided: {self.reason}")
+        if self.kind == "segment":
+            return sets.Segment(self.u_minus, self.u_plus)
+        ends = [self.u_minus] if self.kind == "point" else [self.u_minus, self.u_plus]
+        return sets.Points(np.array(ends))
+
+
+def limit_set(state: State) -> LimitSet:
+    """A(q, u-) of a state, from exact signs; kind "undecided" where a sign cannot be decided."""
+    d, scene = derive(state.scene), state.scene
+    if scene.friction is None or d.b is None or d.C is None:
+        return _limit(state, "point", exact_sign(state.exact(d.gamma)), 0, None, "without friction gamma is positive")
+    edges: tuple[tuple[Edge, sp.Expr], ...] = ((1, d.edge_plus), (-1, d.edge_minus))
+    signs = {edge: exact_sign(state.exact(expression)) for edge, expression in edges}
+    edge, gamma = _least(signs)
+    if gamma.sign is Sign.POSITIVE:
+        return _limit(state, "point", gamma, 0, None, "gamma > 0: only r = 0 keeps the velocity tangential")
+    if gamma.sign is Sign.UNDECIDED:
+        return _limit(state, "undecided", gamma, edge, None, f"the sign of gamma is undecided: {gamma.reason}")
+    slip = (scene.tangents.T * sp.Matrix(scene.u))[0, 0]
+    drive = exact_sign(state.exact(slip * d.b))
+    if drive.sign is Sign.UNDECIDED:
+        return _limit(state, "undecided", gamma, edge, None, f"the sense of the slip is undecided: {drive.reason}")
+    if drive.sign is not Sign.POSITIVE:
+        return _limit(state, "point", gamma, edge, None, "u_tilde = u-: the slip is not in the destabilising sense")
+    impulse = (slip * d.b / (d.a * d.C - d.b**2), -slip * d.a / (d.a * d.C - d.b**2))
+    if gamma.sign is Sign.NEGATIVE:
+        reason = "gamma < 0: stay at u- or jump to u_tilde, where the tip sticks"
+        return _limit(state, "pair", gamma, edge, impulse, reason)
+    return _limit(state, "segment", gamma, edge, impulse, "gamma = 0: every velocity between u- and u_tilde")
+
+
+def _least(signs: dict[Edge, Signed]) -> tuple[Edge, Signed]:
+    """The edge on which gamma is attained: gamma has the sign of the smaller of the two compliances."""
+    order = (Sign.NEGATIVE, Sign.UNDECIDED, Sign.ZERO, Sign.POSITIVE)
+    edge = min(signs, key=lambda e: order.index(signs[e].sign))
+    return edge, signs[edge]
+
+
+def _limit(
+    state: State, kind: Kind, gamma: Signed, edge: Edge, impulse: tuple[sp.Expr, sp.Expr] | None, reason: str
+) -> LimitSet:
+    d = derive(state.scene)
+    u_tilde, normal, tangential = state.u, sp.Integer(0), sp.Integer(0)
+    if impulse is not None and d.tangent_response is not None:
+        normal, tangential = (state.exact(r) for r in impulse)
+        jump = d.normal_response * impulse[0] + d.tangent_response * impulse[1]
+        u_tilde = tuple(u + state.exact(x) for u, x in zip(state.u, jump, strict=True))
+    value = 0.0 if gamma.sign is Sign.ZERO else state.number(d.gamma)
+    return LimitSet(
+        state=state, kind=kind, gamma=gamma, gamma_value=value, edge=edge, multiplier=normal, tangential=tangential,
+        u_tilde=u_tilde, reason=reason,
+    )  # fmt: skip

@@ -1,0 +1,172 @@
+"""The law around one exact state, in offsets: what every method of asymptotics evaluates.
+
+From the exact base state the rows of the scene are expanded in Taylor polynomials whose coefficients are known to
+dozens of digits, so that g, v_n, gamma and S - A come out right to rounding however small eps is. Where eps is so large
+that no affordable polynomial is accurate, the rows are evaluated plainly; nothing cancels badly there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import flint
+import numpy as np
+import sympy as sp
+
+from painleve.asymptotics.limit_set import LimitSet
+from painleve.kernels.compiled import Kernels, make_kernels
+from painleve.mechanics.balls import ball
+from painleve.mechanics.jets import jets, monomials
+
+__all__ = ["Arithmetic", "Expansion", "LocalProblem", "make_local_problem"]
+
+Arithmetic = Literal["automatic", "taylor", "plain"]
+
+MOST_MONOMIALS = 70
+HIGHEST_ORDER = 16
+ACCURACY = 1e-14  # of the truncated expansion, relative to each row's size on the ball
+BITS = 320
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Expansion:
+    """Polynomials for the varying rows, by rising degree, without the constant term.
+
+    `parents`, `factors`: how each monomial is made (painleve.core.taylor). `truncation`: estimate of the largest
+    relative error of a row on the ball, from the degrees left out.
+    """
+
+    order: int
+    parents: np.ndarray
+    factors: np.ndarray
+    coefficients: np.ndarray
+    truncation: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LocalProblem:
+    """The state and its limit set as the kernels want them; arrays are float64, rounded from exact values.
+
+    base: the rows at q; u: u-; direction: unit vector from u- to u_tilde (0 without a jump), length: its distance;
+    impulse: the sticking impulse at the base; multiplier, critical_edge: see painleve.core.offset.planar_split;
+    carried: norm of dg with respect to the carried coordinates, and its direction in q.
+    """
+
+    limit: LimitSet
+    kernels: Kernels
+    q: np.ndarray
+    p: np.ndarray
+    u: np.ndarray
+    base: np.ndarray
+    direction: np.ndarray
+    length: float
+    impulse: np.ndarray
+    multiplier: float
+    critical_edge: int
+    carried: float
+    carried_direction: np.ndarray
+    powers: tuple[tuple[int, ...], ...]
+    table: np.ndarray
+
+    @property
+    def dimension(self) -> int:
+        return int(self.u.size)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return self.kernels.derivation.shape
+
+    @cached_property
+    def exact_multiplier(self) -> flint.arb:
+        """The normal impulse of the jump from u- to u_tilde, as a ball."""
+        return ball(self.limit.multiplier, bits=BITS)
+
+    @cached_property
+    def degrees(self) -> np.ndarray:
+        return np.array([sum(powers) for powers in self.powers], dtype=int)
+
+    def expansion(self, eps: float, arithmetic: Arithmetic = "automatic") -> Expansion | None:
+        """The lowest order that is accurate on balls of radius eps; None: evaluate the rows plainly."""
+        if arithmetic == "plain":
+            return None
+        highest = int(self.degrees.max(initial=0))
+        size = np.abs(self.table) * float(eps) ** self.degrees
+        for order in range(min(2, highest), highest + 1):
+            kept, left = size[:, self.degrees <= order].sum(axis=1), size[:, self.degrees > order].sum(axis=1)
+            # The highest degree stands for all that were never computed.
+            left = left + size[:, self.degrees == highest].sum(axis=1) * (eps if order == highest else 0.0)
+            error = float(np.max(left / np.where(kept > 0.0, kept, 1.0), initial=0.0))
+            if error <= ACCURACY or (order == highest and arithmetic == "taylor"):
+                return self._expansion(order, error)
+        return None
+
+    def _expansion(self, order: int, truncation: float) -> Expansion:
+        chosen = [powers for powers in self.powers if sum(powers) <= order]
+        place = {powers: m for m, powers in enumerate(chosen)}
+        parents, factors = [], []
+        for powers in chosen:
+            factor = next(j for j, power in enumerate(powers) if power)
+            parent = tuple(power - (j == factor) for j, power in enumerate(powers))
+            parents.append(place.get(parent, -1))
+            factors.append(factor)
+        return Expansion(
+            order=order, parents=np.array(parents, dtype=np.int64), factors=np.array(factors, dtype=np.int64),
+            coefficients=np.ascontiguousarray(self.table[:, : len(chosen)]), truncation=truncation,
+        )  # fmt: skip
+
+
+def make_local_problem(limit: LimitSet) -> LocalProblem:
+    """Round an exact state and its limit set to arrays, and expand the rows of its scene about it."""
+    state = limit.state
+    kernels = make_kernels(state.scene)
+    derivation, rows = kernels.derivation, kernels.rows
+    point = {symbol: ball(value, bits=BITS) for symbol, value in state.substitution.items()}
+    variables = [state.scene.q[i] for i in derivation.shape]
+    order = _order(len(variables))
+    configuration = {symbol: value for symbol, value in point.items() if symbol not in state.scene.u}
+    expanded = jets(rows.expressions, variables, configuration, order, bits=BITS)
+    powers = tuple(monomials(len(variables), order)[1:])
+    table = [[float(expanded[r].terms.get(m, flint.arb(0)).mid()) for m in powers] for r in rows.varying]
+    base = np.array([float(jet.constant().mid()) for jet in expanded])
+    if limit.critical:
+        base[rows.index("edge_plus" if limit.edge == 1 else "edge_minus")] = 0.0
+    base[rows.index("g")] = 0.0
+    jump = limit.jump
+    length = float(np.linalg.norm(jump))
+    carried = np.zeros(state.scene.dimension)
+    for i in derivation.carried:
+        carried[i] = state.number(-derivation.normal[i])
+    norm = float(np.linalg.norm(carried))
+    return LocalProblem(
+        limit=limit, kernels=kernels, q=_floats(limit, state.q),
+        p=_floats(limit, [state.parameters[s.name] for s in state.scene.parameters]), u=limit.u_minus, base=base,
+        direction=jump / length if length > 0.0 else jump, length=length, impulse=_base_impulse(limit),
+        multiplier=state.number(limit.multiplier),
+        critical_edge=limit.edge if limit.critical else 0, carried=norm,
+        carried_direction=carried / norm if norm > 0.0 else carried, powers=powers,
+        table=np.array(table).reshape(len(rows.varying), len(powers)),
+    )  # fmt: skip
+
+
+def _order(variables: int) -> int:
+    if variables == 0:
+        return 1
+    fitting = [n for n in range(2, HIGHEST_ORDER + 1) if len(monomials(variables, n)) <= MOST_MONOMIALS]
+    return max(fitting, default=2)
+
+
+def _floats(limit: LimitSet, values: Sequence[sp.Expr]) -> np.ndarray:
+    return np.array([limit.state.number(value) for value in values])
+
+
+def _base_impulse(limit: LimitSet) -> np.ndarray:
+    """-G^-1 v_c at the base state, whether or not it is in the cone (0 without friction)."""
+    state, d = limit.state, make_kernels(limit.state.scene).derivation
+    if d.b is None or d.C is None:
+        return np.zeros(2)
+    slip = (state.scene.tangents.T * sp.Matrix(state.scene.u))[0, 0]
+    determinant = d.a * d.C - d.b**2
+    return np.array([state.number(slip * d.b / determinant), state.number(-slip * d.a / determinant)])

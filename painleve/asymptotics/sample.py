@@ -1,0 +1,233 @@
+"""A_eps by sampling: streamed through compiled blocks, reproducible bit for bit on any number of threads.
+
+A sample consists of members of A_eps and proves nothing else: it bounds e(A_eps, A) from below and e(A, A_eps) from
+above (the project's notes, section 4).
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from painleve.asymptotics.distance import Attained, Distance
+from painleve.asymptotics.limit_set import LimitSet
+from painleve.asymptotics.local import Arithmetic, Expansion, LocalProblem, make_local_problem
+from painleve.asymptotics.member import Member, make_member
+from painleve.core.ball_maps import uniforms_needed
+from painleve.core.codes import Branch
+from painleve.core.lattice import kronecker_generators, kronecker_shifts
+from painleve.core.reduce import PAIR, POINT, SEGMENT
+from painleve.core.sampling import BLOCK, Sampler
+from painleve.errors import InputError
+from painleve.sets import Bounds, excess_of_segment_from_profile
+
+__all__ = ["SAMPLERS", "SampleOptions", "check_eps", "sample_distance", "sample_members"]
+
+SAMPLERS = tuple(s.name.lower() for s in Sampler)
+LANE_BLOCKS = 1024  # half a million samples: some ten milliseconds, so that progress and Ctrl-C come through
+BINS = 1024  # the profile along the segment keeps the best sample in each
+MOST_SAMPLES = 2**50
+KINDS = {"point": POINT, "pair": PAIR, "segment": SEGMENT}
+
+
+@dataclass(frozen=True, kw_only=True)
+class SampleOptions:
+    """How to sample: number of samples, seed, sampler, threads (None: all cores), arithmetic of the rows, and a
+    function called with the number of samples done since the last call."""
+
+    samples: int = 1_000_000
+    seed: int = 0
+    sampler: str = "kronecker"
+    threads: int | None = None
+    arithmetic: Arithmetic = "automatic"
+    progress: Callable[[int], None] | None = None
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.samples <= MOST_SAMPLES:
+            raise InputError(f"samples: {self.samples} must be between 1 and 2^50")
+        if not 0 <= self.seed < 2**63:
+            raise InputError(f"seed: {self.seed} must be between 0 and 2^63 - 1")
+        if self.sampler not in SAMPLERS:
+            raise InputError(f"sampler: no {self.sampler!r}; choose one of {', '.join(SAMPLERS)}")
+        if self.threads is not None and self.threads < 1:
+            raise InputError(f"threads: {self.threads} must be at least 1")
+
+
+@dataclass
+class _Tally:
+    """What a lane keeps, and how lanes are merged: ties go to the smaller index, so the order does not matter."""
+
+    counts: np.ndarray = field(default_factory=lambda: np.zeros(len(Branch), np.int64))
+    best: np.ndarray = field(default_factory=lambda: np.array([-1.0, np.inf, np.inf]))
+    best_index: np.ndarray = field(default_factory=lambda: np.full(3, -1, np.int64))
+    bins: np.ndarray = field(default_factory=lambda: np.full((3, BINS), np.inf))
+    bin_index: np.ndarray = field(default_factory=lambda: np.full(BINS, np.iinfo(np.int64).max))
+
+    def merge(self, other: _Tally) -> None:
+        self.counts += other.counts
+        sense = np.array([-1.0, 1.0, 1.0])
+        for j in range(3):
+            mine, theirs = sense[j] * self.best[j], sense[j] * other.best[j]
+            if theirs < mine or (theirs == mine and other.best_index[j] < self.best_index[j]):
+                self.best[j], self.best_index[j] = other.best[j], other.best_index[j]
+        better = other.bins[2] < self.bins[2]
+        better |= (other.bins[2] == self.bins[2]) & (other.bin_index < self.bin_index)
+        self.bins[:, better], self.bin_index[better] = other.bins[:, better], other.bin_index[better]
+
+
+class _Stream:
+    """The sample of one ball as a function of the index: arguments of the compiled lanes, prepared once."""
+
+    def __init__(self, problem: LocalProblem, eps: float, options: SampleOptions) -> None:
+        self.problem, self.options = problem, options
+        self.code = int(Sampler[options.sampler.upper()])
+        d, shape = problem.dimension, len(problem.shape)
+        self.in_q = shape + (1 if problem.carried > 0.0 else 0)
+        self.q_uniforms = uniforms_needed(self.in_q, d) if self.in_q else 0
+        self.uniform_rows = self.q_uniforms + uniforms_needed(d, d)
+        self.expansion: Expansion | None = problem.expansion(eps, options.arithmetic)
+        empty = np.zeros(0, np.int64)
+        e = self.expansion
+        polynomial = (e.parents, e.factors, e.coefficients) if e else (empty, empty, np.zeros((len(problem.table), 0)))
+        self.points = (
+            kronecker_generators(shape + d), kronecker_shifts(options.seed, shape + d), float(eps), problem.carried,
+            self.q_uniforms, e is not None, *polynomial,
+        )  # fmt: skip
+        self.law = (
+            problem.q, problem.p, problem.base, problem.u, problem.direction, problem.length, problem.impulse,
+            problem.multiplier, problem.critical_edge,
+        )  # fmt: skip
+
+    def lane(self, first: int, blocks: int) -> _Tally:
+        tally, o, p = _Tally(), self.options, self.problem
+        p.kernels.sample_lane(
+            first, blocks, o.samples, self.code, o.seed, *self.points, *self.law, KINDS[p.limit.kind],
+            self.uniform_rows, tally.counts, tally.best, tally.best_index, tally.bins, tally.bin_index,
+        )  # fmt: skip
+        return tally
+
+    def block(self, start: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """(dq, dv, branch, along, across2) of samples start ... start + BLOCK - 1; dq has all coordinates."""
+        d, shape = self.problem.dimension, len(self.problem.shape)
+        uniform = self.code == Sampler.UNIFORM
+        x = np.empty((shape + (1 if uniform else d), BLOCK))
+        dv = np.empty((d, BLOCK)) if uniform else x[shape:]
+        room, uniforms = np.empty(BLOCK), np.empty((self.uniform_rows, BLOCK))
+        monomials = np.empty((self.points[6].size, BLOCK))
+        values = np.empty((len(self.problem.table), BLOCK))
+        branch, along, beyond, across2 = np.empty(BLOCK, np.int64), *(np.empty(BLOCK) for _ in range(3))
+        self.problem.kernels.offset_block(
+            self.code, self.options.seed, start, *self.points, *self.law,
+            x, dv, room, uniforms, monomials, values, branch, along, beyond, across2,
+        )  # fmt: skip
+        dq = np.zeros((d, BLOCK))
+        dq[list(self.problem.shape)] = x[:shape]
+        if self.problem.carried > 0.0:
+            dq += self.problem.carried_direction[:, None] * (room / self.problem.carried)
+        return dq, dv.copy(), branch, along, across2
+
+    def member(self, index: int) -> Member:
+        """The sample of that index, evaluated rigorously. Raises ArithmeticError where its branch is undecided."""
+        start = index // BLOCK * BLOCK
+        dq, dv, *_ = self.block(start)
+        return make_member(self.problem, dq[:, index - start], dv[:, index - start])
+
+
+def check_eps(eps: float) -> float:
+    """eps as a float. Raises InputError unless it is finite and positive."""
+    value = float(eps)
+    if not (np.isfinite(value) and value > 0.0):
+        raise InputError(f"eps: {eps} must be a positive number")
+    return value
+
+
+def sample_distance(limit: LimitSet, eps: float, options: SampleOptions | None = None) -> Distance:
+    """Bounds on both excesses from members of A_eps: e(A_eps, A) from below, e(A, A_eps) from above.
+
+    The farthest member is evaluated again in ball arithmetic, so the lower bound is that of a true member.
+    Raises InputError for eps <= 0 and for a state whose limit set is undecided.
+    """
+    options, eps = options or SampleOptions(), check_eps(eps)
+    if limit.kind == "undecided":
+        raise InputError(f"state {limit.state.label}: no distance to a limit set that is undecided: {limit.reason}")
+    problem = make_local_problem(limit)
+    stream = _Stream(problem, eps, options)
+    tally = _Tally()
+    for part in _lanes(stream):
+        tally.merge(part)
+    farthest = stream.member(int(tally.best_index[0]))
+    counts = {b.label: int(tally.counts[b]) for b in Branch if _has(problem, b)}
+    return Distance(
+        limit=limit, eps=eps, method="sample", counts=counts, evaluations=options.samples,
+        excess_Aeps_A=Attained(bounds=Bounds.at_least(farthest.distance[0]), member=farthest),
+        excess_A_Aeps=_excess_of_limit(stream, tally),
+        ending=f"all {options.samples} samples were drawn",
+        settings={
+            "samples": options.samples, "seed": options.seed, "sampler": options.sampler,
+            "arithmetic": f"taylor, order {stream.expansion.order}" if stream.expansion else "plain",
+        },
+    )  # fmt: skip
+
+
+def sample_members(limit: LimitSet, eps: float, options: SampleOptions | None = None) -> dict[str, np.ndarray]:
+    """The samples themselves, for pictures: dq, dv (n, d), S - u- (n, d) and branch (n,)."""
+    options = options or SampleOptions(samples=BLOCK)
+    problem = make_local_problem(limit)
+    stream = _Stream(problem, check_eps(eps), options)
+    blocks = [stream.block(start)[:2] for start in range(0, options.samples, BLOCK)]
+    dq = np.concatenate([b[0].T for b in blocks])[: options.samples]
+    dv = np.concatenate([b[1].T for b in blocks])[: options.samples]
+    values, branch = np.empty_like(dv), np.empty(len(dv), np.int64)
+    law = problem.kernels.law_at
+    for i in range(len(dv)):
+        branch[i] = law(problem.q + dq[i], problem.p, problem.u + dv[i], values[i])
+    return {"dq": dq, "dv": dv, "offset": values - problem.u, "branch": branch}
+
+
+def _has(problem: LocalProblem, branch: Branch) -> bool:
+    """Whether the scene can take that branch at all."""
+    frictionless = problem.limit.state.scene.friction is None
+    return branch is Branch.FREE or frictionless == (branch is Branch.FRICTIONLESS)
+
+
+def _lanes(stream: _Stream) -> Iterable[_Tally]:
+    """Tallies of all lanes, on threads, with a bounded number in flight."""
+    options = stream.options
+    blocks = -(-options.samples // BLOCK)
+    starts = iter(range(0, blocks, LANE_BLOCKS))
+    threads = options.threads or os.cpu_count() or 1
+    with ThreadPoolExecutor(threads) as pool:
+        pending: set[Future[_Tally]] = set()
+        while True:
+            for first in starts:
+                pending.add(pool.submit(stream.lane, first, min(LANE_BLOCKS, blocks - first)))
+                if len(pending) >= 2 * threads:
+                    break
+            if not pending:
+                return
+            done, pending = wait(pending, return_when=FIRST_COMPLETED)
+            for future in done:
+                tally = future.result()
+                if options.progress is not None:
+                    options.progress(int(tally.counts.sum()))
+                yield tally
+
+
+def _excess_of_limit(stream: _Stream, tally: _Tally) -> Attained:
+    """An upper bound on e(A, A_eps) from the samples nearest to A, exact for those samples."""
+    problem = stream.problem
+    if problem.limit.kind == "segment":
+        known = np.isfinite(tally.bins[2])
+        t, rho = tally.bins[0, known], np.sqrt(tally.bins[2, known])
+        value, place, nearest = excess_of_segment_from_profile(t, rho, problem.length)
+        index, point = int(tally.bin_index[known][nearest]), problem.u + place * problem.direction
+    else:
+        ends = 1 if problem.limit.kind == "point" else 2
+        worst = int(np.argmax(tally.best[1 : 1 + ends]))
+        value, index = float(np.sqrt(tally.best[1 + worst])), int(tally.best_index[1 + worst])
+        point = problem.u + worst * problem.length * problem.direction
+    return Attained(bounds=Bounds.at_most(value), member=stream.member(index), point=point)

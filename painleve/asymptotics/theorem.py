@@ -1,0 +1,184 @@
+"""Theorem 1 (paper, section 3): which branch holds at a state, and what measured distances say of its statement."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from painleve.asymptotics.distance import Distance
+from painleve.asymptotics.limit_set import LimitSet, limit_set
+from painleve.asymptotics.witness import find_family
+from painleve.mechanics.neighbourhood import Neighbourhood, Neighbours, neighbours
+from painleve.mechanics.state import State
+
+__all__ = ["Branch", "Classification", "Evidence", "Status", "Verdict", "classify", "collect", "judge", "slope"]
+
+SHADOW = 1e-3  # how near, in units of eps, the witnesses of eq. (10) are asked to come
+LEAST_SLOPE = 0.5  # of an excess that tends to zero: k = 1 has slope 1 and no state is known to have less than 1/2
+
+
+class Branch(Enum):
+    """Branches of Theorem 1; NONE where nothing is indeterminate: gamma > 0, or u_tilde = u-."""
+
+    NONE = "none"
+    NEGATIVE = "negative"
+    CRITICAL_APPROACHED = "critical_approached"
+    CRITICAL_ISOLATED = "critical_isolated"
+    UNDECIDED = "undecided"
+
+
+STATEMENTS = {
+    Branch.NONE: "A = {u-}, and A_eps tends to it",
+    Branch.NEGATIVE: "d_H(A, A_eps) -> 0 with A = {u-, u_tilde}",
+    Branch.CRITICAL_APPROACHED: "d_H(A, A_eps) -> 0 with A = [u-, u_tilde]",
+    Branch.CRITICAL_ISOLATED: "d_H({u-, u_tilde}, A_eps) -> 0, and d_H([u-, u_tilde], A_eps) -> |u_tilde - u-|/2",
+    Branch.UNDECIDED: "no branch is decided",
+}
+
+_CRITICAL = {
+    Neighbourhood.APPROACHED: Branch.CRITICAL_APPROACHED,
+    Neighbourhood.ISOLATED: Branch.CRITICAL_ISOLATED,
+    Neighbourhood.UNDECIDED: Branch.UNDECIDED,
+}
+
+
+class Status(Enum):
+    """What is known of a statement. PROVED: every bound that it needs is decided on both sides."""
+
+    PROVED = "proved"
+    CONSISTENT = "consistent"
+    REFUTED = "refuted"
+    UNDECIDED = "undecided"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Classification:
+    """The branch at a state, decided in exact arithmetic, its limit set, and why."""
+
+    branch: Branch
+    limit: LimitSet
+    neighbours: Neighbours | None
+    reason: str
+
+    @property
+    def statement(self) -> str:
+        return STATEMENTS[self.branch]
+
+    def as_dict(self) -> dict[str, object]:
+        limit = self.limit
+        return {
+            "scene": limit.state.scene.name,
+            "state": limit.state.label,
+            "branch": self.branch.value,
+            "reason": self.reason,
+            "statement": self.statement,
+            "gamma": limit.gamma_value,
+            "sign_of_gamma": limit.gamma.sign.name.lower(),
+            "u_minus": limit.u_minus.tolist(),
+            "u_tilde": limit.u_plus.tolist(),
+            "limit_set": limit.kind if limit.kind != "undecided" else None,
+            "q": [limit.state.number(x) for x in limit.state.q],
+            "parameters": {name: limit.state.number(x) for name, x in limit.state.parameters.items()},
+        }
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Evidence:
+    """What is known at one eps: the distances between A and A_eps, those between {u-, u_tilde} and A_eps (the same
+    unless A is a segment), and an upper bound on e(A, A_eps) from witnesses (None: none were found)."""
+
+    eps: float
+    distance: Distance
+    ends: Distance
+    witnessed: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verdict:
+    """What distances at several eps say of the branch's statement; slope: of log e(A_eps, A) against log eps."""
+
+    branch: Branch
+    status: Status
+    reason: str
+    slope: float | None
+
+
+def classify(state: State) -> Classification:
+    """The branch of Theorem 1 at an exact state: exact signs of gamma at q and near q, or an undecided one."""
+    limit = limit_set(state)
+    if limit.kind == "point":
+        return Classification(branch=Branch.NONE, limit=limit, neighbours=None, reason=limit.reason)
+    if limit.kind == "undecided":
+        return Classification(branch=Branch.UNDECIDED, limit=limit, neighbours=None, reason=limit.reason)
+    if limit.kind == "pair":
+        return Classification(branch=Branch.NEGATIVE, limit=limit, neighbours=None, reason=limit.reason)
+    near = neighbours(state, limit.edge)
+    return Classification(branch=_CRITICAL[near.kind], limit=limit, neighbours=near, reason=f"gamma = 0; {near.reason}")
+
+
+def collect(classification: Classification, eps: float, measure: Callable[[LimitSet, float], Distance]) -> Evidence:
+    """Measure the distances at one eps by the given method, and look for witnesses."""
+    limit = classification.limit
+    distance = measure(limit, eps)
+    ends = measure(limit.ends, eps) if limit.kind == "segment" else distance
+    family = find_family(limit, eps, within=SHADOW * eps)
+    return Evidence(eps=eps, distance=distance, ends=ends, witnessed=family.bound if family else None)
+
+
+def judge(classification: Classification, evidence: Sequence[Evidence]) -> Verdict:
+    """What the evidence says of the branch's statement.
+
+    CONSISTENT rests on one-sided numbers, PROVED on enclosures at every eps given (the limit itself is the theorem's);
+    REFUTED needs a bound that the statement forbids.
+    """
+    branch = classification.branch
+    isolated = branch is Branch.CRITICAL_ISOLATED
+    excesses = [(e.ends if isolated else e.distance).excess_Aeps_A.bounds.lower or 0.0 for e in evidence]
+    rate = slope([e.eps for e in evidence], excesses)
+    status, reason = _status(classification, evidence, rate)
+    return Verdict(branch=branch, status=status, reason=reason, slope=rate)
+
+
+def _status(classification: Classification, evidence: Sequence[Evidence], rate: float | None) -> tuple[Status, str]:
+    if classification.branch is Branch.UNDECIDED:
+        return Status.UNDECIDED, classification.reason
+    if rate is None:
+        return Status.UNDECIDED, "distances at two values of eps at least are needed"
+    if rate < LEAST_SLOPE:
+        return Status.REFUTED, f"e(A_eps, A) falls like eps^{rate:.2f} only: members of A_eps stay away from A"
+    if classification.branch is Branch.CRITICAL_ISOLATED:
+        return _isolated_status(classification, evidence)
+    missing = [e.eps for e in evidence if e.witnessed is None]
+    if missing:
+        return Status.UNDECIDED, f"no witnesses of e(A, A_eps) -> 0 were found at eps = {missing[0]:g}"
+    if all(e.distance.excess_Aeps_A.bounds.upper is not None for e in evidence):
+        return Status.PROVED, "both excesses are enclosed at every eps, and witnesses shadow all of A"
+    return Status.CONSISTENT, "members of A_eps come as near to A as eps, and witnesses shadow all of A"
+
+
+def _isolated_status(classification: Classification, evidence: Sequence[Evidence]) -> tuple[Status, str]:
+    """e(A, A_eps) must tend to half the segment's length: from above by nearness of the ends, never below it by much."""
+    half = float(np.linalg.norm(classification.limit.jump)) / 2.0
+    last = min(evidence, key=lambda e: e.eps)
+    backward = last.distance.excess_A_Aeps.bounds
+    if backward.upper is not None and backward.upper < 0.5 * half:
+        return Status.REFUTED, f"at eps = {last.eps:g} all of A is within {backward.upper:.3g} of A_eps"
+    enclosed = all(
+        e.ends.excess_Aeps_A.bounds.upper is not None and e.distance.excess_A_Aeps.bounds.lower is not None
+        for e in evidence
+    )
+    if enclosed:
+        return Status.PROVED, f"enclosures at every eps: A_eps tends to the ends of A, the middle stays {half:.6g} away"
+    return Status.CONSISTENT, f"members near the ends of A only are found; the middle of A is {half:.6g} away from them"
+
+
+def slope(eps: Sequence[float], values: Sequence[float]) -> float | None:
+    """Least-squares slope of log value against log eps; None without two positive values."""
+    x, y = np.asarray(eps, dtype=float), np.asarray(values, dtype=float)
+    known = y > 0.0
+    if known.sum() < 2 or np.ptp(np.log(x[known])) == 0.0:
+        return None
+    return float(np.polyfit(np.log(x[known]), np.log(y[known]), 1)[0])
