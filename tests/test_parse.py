@@ -441,7 +441,7 @@ def test_a_float_is_recovered_from_its_exact_number(value: float) -> None:
         None,
         b"1",
         [1],
-        object(),
+        pytest.param(object(), id="an object"),  # its repr holds an address, which no two processes share
         X,
         sympy.Float("0.1"),
         sympy.pi + sympy.Float(1),
