@@ -5,8 +5,6 @@ cancel the normal velocity form an interval of the line a r_n + b r_t = -v_n. Th
 line is a parabola with its least value at the sticking impulse, so S is a clamp: this holds for every sign of gamma.
 """
 
-import math
-
 from painleve._jit import jit
 from painleve.core.codes import Branch
 
@@ -19,12 +17,6 @@ def stick_impulse(a, b, C, v_n, v_t):
     """The impulse -G^-1 v_c that stops the tip."""
     determinant = a * C - b * b
     return (b * v_t - C * v_n) / determinant, (b * v_n - a * v_t) / determinant
-
-
-@jit
-def slip_multiplier(edge, v_n):
-    """lambda = -v_n/edge on an edge of the cone; infinite where that edge cannot lift the tip (edge <= 0)."""
-    return -v_n / edge if edge > 0.0 else math.inf
 
 
 @jit
