@@ -56,7 +56,7 @@ class LimitSet:
     @property
     def u_plus(self) -> np.ndarray:
         """(d,) floats of u_tilde."""
-        return np.array([self.state.number(x) for x in self.u_tilde])
+        return np.array([self.state.number(x) for x in self.u_tilde]) + 0.0  # no negative zeros
 
     @property
     def jump(self) -> np.ndarray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 
 from painleve.asymptotics.distance import Distance
@@ -10,13 +11,35 @@ from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.sample import SampleOptions, sample_distance
 from painleve.errors import InputError
 
-__all__ = ["METHODS", "distance"]
-
-METHODS: Mapping[str, Callable[..., Distance]] = MappingProxyType({"sample": sample_distance})
+__all__ = ["METHODS", "Method", "distance", "find_method"]
 
 
-def distance(limit: LimitSet, eps: float, method: str = "sample", options: SampleOptions | None = None) -> Distance:
-    """Bounds on e(A_eps, A), e(A, A_eps) and d_H by the method of that name. Raises InputError for an unknown one."""
-    if method not in METHODS:
-        raise InputError(f"method: no {method!r}; choose one of {', '.join(METHODS)}")
-    return METHODS[method](limit, eps, options)
+@dataclass(frozen=True, kw_only=True)
+class Method:
+    """A method: measure(limit, eps, options) and the type of its options, all of which have defaults."""
+
+    measure: Callable[..., Distance]
+    options: type
+
+
+METHODS: Mapping[str, Method] = MappingProxyType({
+    "sample": Method(measure=sample_distance, options=SampleOptions),
+})  # fmt: skip
+
+
+def find_method(name: str) -> Method:
+    """The method of that name. Raises InputError for an unknown one."""
+    if name not in METHODS:
+        raise InputError(f"method: no {name!r}; choose one of {', '.join(METHODS)}")
+    return METHODS[name]
+
+
+def distance(limit: LimitSet, eps: float, method: str = "sample", options: object | None = None) -> Distance:
+    """Bounds on e(A_eps, A), e(A, A_eps) and d_H by the method of that name, with that method's options.
+
+    Raises InputError for an unknown method, options of another one, eps <= 0 and an undecided limit set.
+    """
+    chosen = find_method(method)
+    if options is not None and not isinstance(options, chosen.options):
+        raise InputError(f"method {method}: options must be {chosen.options.__name__}, not {type(options).__name__}")
+    return chosen.measure(limit, eps, options)

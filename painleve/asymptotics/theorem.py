@@ -160,7 +160,7 @@ def _status(classification: Classification, evidence: Sequence[Evidence], rate: 
 
 
 def _isolated_status(classification: Classification, evidence: Sequence[Evidence]) -> tuple[Status, str]:
-    """e(A, A_eps) must tend to half the segment's length: from above by nearness of the ends, never below it by much."""
+    """e(A, A_eps) must tend to half the segment's length: members near the ends come no nearer."""
     half = float(np.linalg.norm(classification.limit.jump)) / 2.0
     last = min(evidence, key=lambda e: e.eps)
     backward = last.distance.excess_A_Aeps.bounds

@@ -1,0 +1,65 @@
+"""The command line `painleve`: exit status 0, or 2 with one clear line on stderr where the input is at fault."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
+from painleve.cli import classify, derive, distance, scenes
+from painleve.errors import InputError
+
+__all__ = ["main"]
+
+COMMANDS = (scenes, derive, classify, distance)
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line, without the usage text."""
+
+    def error(self, message: str) -> NoReturn:
+        raise InputError(f"{message}; see {self.prog} --help")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; returns the exit status."""
+    try:
+        options = _parser().parse_args(arguments)
+        return int(options.run(options))
+    except InputError as error:
+        return _complain(str(error))
+    except OSError as error:
+        return _complain(f"{error.filename or 'file'}: {error.strerror or error}")
+    except ArithmeticError as error:
+        return _complain(f"the numbers asked for cannot be decided: {error}")
+    except KeyboardInterrupt:
+        print("painleve: interrupted", file=sys.stderr)
+        return 130
+
+
+def _complain(message: str) -> int:
+    print(f"painleve: {' '.join(message.split())}", file=sys.stderr)
+    return 2
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="painleve", description="Painlevé paradoxes: derive scenes, decide Theorem 1, measure A_eps against A.",
+        epilog="example: painleve classify slender_rod --state paradox",
+    )  # fmt: skip
+    parser.add_argument("--version", action="version", version=_version())
+    commands = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=_Parser)
+    for command in COMMANDS:
+        command.register(commands)
+    return parser
+
+
+def _version() -> str:
+    from importlib.metadata import version
+
+    return f"painleve {version('painleve')}"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

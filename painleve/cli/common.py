@@ -1,0 +1,111 @@
+"""What the commands share: the arguments that give a scene and a state, numbers, and printing."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from painleve.errors import InputError
+
+if TYPE_CHECKING:
+    from painleve.mechanics.state import State
+
+__all__ = ["add_command", "add_json", "add_scene", "add_state", "count", "print_json", "read_state", "real"]
+
+
+def add_command(
+    commands: Any, name: str, run: Callable[[argparse.Namespace], int], *, sentence: str, example: str
+) -> argparse.ArgumentParser:
+    """A subcommand with its sentence and one example in its help."""
+    parser: argparse.ArgumentParser = commands.add_parser(
+        name, help=sentence, description=sentence, epilog=f"example: {example}"
+    )
+    parser.set_defaults(run=run)
+    return parser
+
+
+def add_scene(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("scene", metavar="SCENE", help="a scene of the library; `painleve scenes` lists them")
+
+
+def add_state(parser: argparse.ArgumentParser) -> None:
+    """--state and --set, each with one or more values."""
+    parser.add_argument(
+        "--state", nargs="+", action="extend", default=[], metavar="NAME|KEY=EXPR",
+        help="a named state, or exact keys such as theta='atan(2)' slip=-1; keys after a name override it",
+    )  # fmt: skip
+    parser.add_argument(
+        "--set", nargs="+", action="extend", default=[], metavar="PARAM=EXPR", dest="parameters",
+        help="exact values of parameters, such as mu=4/3",
+    )  # fmt: skip
+
+
+def add_json(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--json", action="store_true", help="print one JSON object for machines")
+
+
+def read_state(options: argparse.Namespace) -> State:
+    """The exact state that the arguments give."""
+    from painleve.mechanics.library import load_scene
+    from painleve.mechanics.state import make_state
+
+    scene = load_scene(options.scene)
+    names = [word for word in options.state if "=" not in word]
+    if len(names) > 1:
+        raise InputError(f"--state: {' and '.join(names)} are two names; give one, then KEY=EXPR to change it")
+    if not options.state:
+        known = ", ".join(s.name for s in scene.states)
+        keys = " ".join(f"{k.name}=EXPR" for k in scene.keys)
+        raise InputError(f"--state is needed: one of {known}, or {keys}")
+    keys = _assignments([word for word in options.state if "=" in word], "--state")
+    return make_state(scene, names[0] if names else None, keys=keys, parameters=_assignments(options.parameters, "--set"))
+
+
+def _assignments(words: Sequence[str], option: str) -> dict[str, str]:
+    table: dict[str, str] = {}
+    for word in words:
+        name, equals, value = word.partition("=")
+        name = name.strip()
+        if not equals or not name or not value.strip():
+            raise InputError(f"{option}: {word!r} is not NAME=EXPR")
+        if name in table:
+            raise InputError(f"{option}: {name} is given twice")
+        table[name] = value.strip()
+    return table
+
+
+def real(text: str) -> float:
+    """A float for argparse; nan and inf are refused."""
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(text)
+    return value
+
+
+def count(text: str) -> int:
+    """A whole number for argparse; 1e6 is one."""
+    try:
+        return int(text)
+    except ValueError:
+        value = float(text)
+        if not value.is_integer():
+            raise
+        return int(value)
+
+
+def print_json(data: object) -> None:
+    """Strict JSON: numbers that are not finite become null."""
+    print(json.dumps(_strict(data), indent=2, ensure_ascii=False))
+
+
+def _strict(data: object) -> object:
+    if isinstance(data, dict):
+        return {str(key): _strict(value) for key, value in data.items()}
+    if isinstance(data, list | tuple):
+        return [_strict(value) for value in data]
+    if isinstance(data, float) and not math.isfinite(data):
+        return None
+    return data

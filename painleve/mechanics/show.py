@@ -1,0 +1,177 @@
+"""A scene's derivation as a person would write it: simplified, in order, with a sentence and a unit for every symbol."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import sympy as sp
+
+from painleve.mechanics.derive import Derivation, derive
+from painleve.mechanics.parse import parse_expression
+from painleve.mechanics.scene import Scene
+
+__all__ = ["Line", "as_dict", "as_latex", "as_text", "derivation_lines"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Line:
+    """One formula: how its left side is written plainly and in LaTeX, what it is, and the expression."""
+
+    name: str
+    plain: str
+    latex: str
+    sentence: str
+    expression: sp.Expr | sp.MatrixBase
+
+
+def derivation_lines(scene: Scene) -> list[Line]:
+    """The formulas from M to the critical friction; simplifying takes up to some seconds."""
+    return [*_mechanics(scene), *_contact(scene)]
+
+
+def _mechanics(scene: Scene) -> Iterator[Line]:
+    d = derive(scene)
+    size = sp.sqrt(_short(d.gradient_squared))
+    yield Line(name="M", plain="M(q)", latex="M(q)", sentence="inertia", expression=scene.inertia.applyfunc(_short))
+    yield Line(name="f", plain="f(t, q, u)", latex="f(t, q, u)", expression=scene.force.applyfunc(_short),
+               sentence="force, gyroscopic terms included")  # fmt: skip
+    yield Line(name="g", plain="g(q)", latex="g(q)", expression=_short(scene.constraint),
+               sentence="constraint: admissible where g <= 0, so the gap is -g")  # fmt: skip
+    yield Line(name="grad_g", plain="∇g(q)", latex=r"\nabla g(q)", sentence="gradient of the constraint",
+               expression=(-d.normal).applyfunc(_short))  # fmt: skip
+    yield Line(name="n", plain="n(q)", latex="n(q)", sentence="inward unit normal, -∇g/|∇g|",
+               expression=d.normal.applyfunc(_short) / size)  # fmt: skip
+
+
+def _contact(scene: Scene) -> Iterator[Line]:
+    d = derive(scene)
+    if scene.friction is not None:
+        yield Line(name="H", plain="H(q)", latex="H(q)", expression=scene.tangents.applyfunc(_short),
+                   sentence="gradient of the contact point's tangential displacement")  # fmt: skip
+        yield from _section(d)
+    yield Line(name="a", plain="a(q)", latex="a(q)", expression=_short(d.a),
+               sentence="normal compliance, ∇g·M⁻¹∇g")  # fmt: skip
+    if d.b is not None and d.C is not None:
+        yield Line(name="b", plain="b(q)", latex="b(q)", expression=_short(d.b),
+                   sentence="coupling of normal and tangent, -∇g·M⁻¹H")  # fmt: skip
+        yield Line(name="C", plain="C(q)", latex="C(q)", expression=_short(d.C),
+                   sentence="tangential compliance, H·M⁻¹H")  # fmt: skip
+    yield from _indicator(d)
+
+
+def _section(d: Derivation) -> Iterator[Line]:
+    friction = d.scene.friction
+    assert friction is not None
+    size = sp.sqrt(_short(d.gradient_squared))
+    ends = [d.scene.tangents.applyfunc(_short) * s / size for s in (-friction.minus, friction.plus)]
+    yield Line(name="D_1_minus", plain="D₁(q) from", latex=r"D_1^-(q)", expression=ends[0],
+               sentence="the friction section is the segment H s/|∇g|, from its end s = -μ")  # fmt: skip
+    yield Line(name="D_1_plus", plain="D₁(q) to", latex=r"D_1^+(q)", expression=ends[1],
+               sentence="to its end s = +μ")  # fmt: skip
+
+
+def _indicator(d: Derivation) -> Iterator[Line]:
+    yield Line(name="gamma", plain="γ(q)", latex=r"\gamma(q)", expression=_gamma(d, {}),
+               sentence="least of <n, M⁻¹(n + w)> over D₁: negative in the paradox")  # fmt: skip
+    if d.critical_friction is not None:
+        yield Line(name="critical_friction", plain="μ_c(q)", latex=r"\mu_c(q)", expression=_critical(d, {}),
+                   sentence="critical friction: γ < 0 where μ > μ_c")  # fmt: skip
+    defaults = dependent_defaults(d.scene)
+    if defaults:
+        given = ", ".join(f"{name} = {value}" for name, value in defaults.items())
+        yield Line(name="gamma_default", plain="γ(q)", latex=r"\gamma(q)", sentence=f"γ with {given}",
+                   expression=_gamma(d, defaults))  # fmt: skip
+        if d.critical_friction is not None:
+            yield Line(name="critical_friction_default", plain="μ_c(q)", latex=r"\mu_c(q)",
+                       sentence=f"critical friction with {given}", expression=_critical(d, defaults))  # fmt: skip
+
+
+def dependent_defaults(scene: Scene) -> dict[sp.Symbol, sp.Expr]:
+    """Parameters whose default is a formula in others, such as I = m l^2/3."""
+    known = {p.name: p.symbol for p in scene.parameters}
+    formulas = {p.symbol: parse_expression(p.default, known, where=f"default of {p.name}") for p in scene.parameters}
+    return {symbol: formula for symbol, formula in formulas.items() if formula.free_symbols}
+
+
+def _gamma(d: Derivation, values: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
+    squared = _short(d.gradient_squared.xreplace(values))
+    friction = d.scene.friction
+    if friction is None or d.b is None:
+        return _short(d.a.xreplace(values)) / squared
+    a, b = _short(d.a.xreplace(values)), _short(d.b.xreplace(values))
+    if friction.plus == friction.minus:
+        return (a - friction.plus.xreplace(values) * _absolute(b)) / squared
+    return sp.Min(_short(d.edge_plus.xreplace(values)), _short(d.edge_minus.xreplace(values))) / squared
+
+
+def _critical(d: Derivation, values: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
+    assert d.b is not None
+    if d.b == 0:
+        return sp.oo
+    ratio = (d.a / d.b).xreplace(values)
+    forms = [sp.fraction(sp.factor(sp.together(form))) for form in (ratio, _short(ratio))]
+    return min((_absolute(n) / _absolute(m) for n, m in forms), key=_length)
+
+
+def _length(expression: sp.Expr) -> int:
+    return len(str(expression))
+
+
+def _absolute(expression: sp.Expr) -> sp.Expr:
+    """|.| with what is known to be positive taken out."""
+    return sp.Abs(sp.factor_terms(expression))
+
+
+def _short(expression: sp.Expr) -> sp.Expr:
+    """The shortest of the forms that simplification offers; the given one where it is as short."""
+    expression = sp.sympify(expression)
+    if expression.count_ops() < 12:
+        return expression
+    together = sp.factor(sp.together(expression))
+    forms = [expression, together, sp.trigsimp(sp.simplify(together))]
+    return min(forms, key=_length)
+
+
+def as_text(scene: Scene) -> str:
+    """The derivation in plain text: symbols with units, then the formulas."""
+    parts = [f"{scene.name}: {scene.sentence}", f"source: {scene.source}", "", "Coordinates"]
+    parts += [f"  {c.name:10} [{c.unit}]  {c.sentence}" for c in scene.coordinates]
+    parts += ["", "Parameters"]
+    parts += [f"  {p.name:10} [{p.unit}]  {p.sentence}; default {p.default}" for p in scene.parameters]
+    for line in derivation_lines(scene):
+        formula = sp.pretty(sp.Eq(sp.Symbol(line.plain), line.expression, evaluate=False), wrap_line=False)
+        parts += ["", f"{line.sentence}:", *(f"    {row}" for row in formula.splitlines())]
+    return "\n".join(parts)
+
+
+def as_latex(scene: Scene) -> str:
+    """The derivation as LaTeX: one displayed formula a line, with its sentence as a comment above."""
+    names = {s.symbol: s.latex for s in (*scene.coordinates, *scene.parameters) if s.latex}
+    names |= {c.velocity: rf"\dot{{{c.latex or c.name}}}" for c in scene.coordinates}
+    rows = []
+    for line in derivation_lines(scene):
+        rows.append(f"% {line.sentence}")
+        rows.append(rf"\[ {line.latex} = {sp.latex(line.expression, symbol_names=names)} \]")
+    return "\n".join(rows)
+
+
+def as_dict(scene: Scene) -> dict[str, object]:
+    """The derivation for machines; formulas as text that Python reads."""
+    lines = {
+        line.name: {"sentence": line.sentence, "formula": _plain(line.expression)} for line in derivation_lines(scene)
+    }
+    symbols = [
+        {"name": s.name, "unit": s.unit, "sentence": s.sentence} for s in (*scene.coordinates, *scene.parameters)
+    ]
+    roles = derive(scene)
+    return {
+        "scene": scene.name, "sentence": scene.sentence, "source": scene.source, "symbols": symbols, "formulas": lines,
+        "coordinates_of_the_law": [scene.coordinates[i].name for i in roles.shape],
+    }  # fmt: skip
+
+
+def _plain(expression: sp.Expr | sp.MatrixBase) -> object:
+    if isinstance(expression, sp.MatrixBase):
+        return [[str(x) for x in row] for row in expression.tolist()]
+    return str(expression)
