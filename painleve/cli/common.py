@@ -60,8 +60,9 @@ def read_state(options: argparse.Namespace) -> State:
         known = ", ".join(s.name for s in scene.states)
         keys = " ".join(f"{k.name}=EXPR" for k in scene.keys)
         raise InputError(f"--state is needed: one of {known}, or {keys}")
-    keys = _assignments([word for word in options.state if "=" in word], "--state")
-    return make_state(scene, names[0] if names else None, keys=keys, parameters=_assignments(options.parameters, "--set"))
+    given = _assignments([word for word in options.state if "=" in word], "--state")
+    parameters = _assignments(options.parameters, "--set")
+    return make_state(scene, names[0] if names else None, keys=given, parameters=parameters)
 
 
 def _assignments(words: Sequence[str], option: str) -> dict[str, str]:

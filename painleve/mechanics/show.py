@@ -1,4 +1,4 @@
-"""A scene's derivation as a person would write it: simplified, in order, with a sentence and a unit for every symbol."""
+"""A scene's derivation as a person would write it: simplified, in order, every symbol with its sentence and unit."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import sympy as sp
 
 from painleve.mechanics.derive import Derivation, derive
 from painleve.mechanics.parse import parse_expression
-from painleve.mechanics.scene import Scene
+from painleve.mechanics.scene import Coordinate, Parameter, Scene
 
 __all__ = ["Line", "as_dict", "as_latex", "as_text", "derivation_lines"]
 
@@ -147,7 +147,8 @@ def as_text(scene: Scene) -> str:
 
 def as_latex(scene: Scene) -> str:
     """The derivation as LaTeX: one displayed formula a line, with its sentence as a comment above."""
-    names = {s.symbol: s.latex for s in (*scene.coordinates, *scene.parameters) if s.latex}
+    declared: list[Coordinate | Parameter] = [*scene.coordinates, *scene.parameters]
+    names = {s.symbol: s.latex for s in declared if s.latex}
     names |= {c.velocity: rf"\dot{{{c.latex or c.name}}}" for c in scene.coordinates}
     rows = []
     for line in derivation_lines(scene):
@@ -161,9 +162,8 @@ def as_dict(scene: Scene) -> dict[str, object]:
     lines = {
         line.name: {"sentence": line.sentence, "formula": _plain(line.expression)} for line in derivation_lines(scene)
     }
-    symbols = [
-        {"name": s.name, "unit": s.unit, "sentence": s.sentence} for s in (*scene.coordinates, *scene.parameters)
-    ]
+    declared: list[Coordinate | Parameter] = [*scene.coordinates, *scene.parameters]
+    symbols = [{"name": s.name, "unit": s.unit, "sentence": s.sentence} for s in declared]
     roles = derive(scene)
     return {
         "scene": scene.name, "sentence": scene.sentence, "source": scene.source, "symbols": symbols, "formulas": lines,
