@@ -9,9 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-import sympy as sp
-from sympy.printing.pycode import PythonCodePrinter
-
+from painleve.kernels.printing import assignments, indent, renamed, used
 from painleve.kernels.rows import Rows
 from painleve.mechanics.scene import Scene
 
@@ -56,8 +54,8 @@ def offset_block(sampler, seed, start, alphas, shifts, eps, carried, q_uniforms,
 
 
 @jit
-def sample_lane(first, blocks, samples, sampler, seed, alphas, shifts, eps, carried, q_uniforms, taylor, parents, factors,
-                coefficients, q, p, base, u, direction, length, impulse, multiplier, critical_edge, kind,
+def sample_lane(first, blocks, samples, sampler, seed, alphas, shifts, eps, carried, q_uniforms, taylor, parents,
+                factors, coefficients, q, p, base, u, direction, length, impulse, multiplier, critical_edge, kind,
                 uniform_rows, counts, best, best_index, bins, bin_index):
     """Run `blocks` blocks from block `first` and fold them into this lane's state."""
     dimension, q_rows = {dimension}, {shape}
@@ -86,27 +84,6 @@ def law_at(q, p, v, result):
 '''
 
 
-class _Printer(PythonCodePrinter):
-    """Small integer powers become products, which vectorise and round once per factor."""
-
-    def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
-        base, exponent = expr.args
-        if exponent.is_Integer and 1 < abs(int(exponent)) <= 4:
-            factor = self.parenthesize(base, 100)
-            product = "*".join([factor] * abs(int(exponent)))
-            return f"({product})" if exponent > 0 else f"(1.0/({product}))"
-        return super()._print_Pow(expr, rational=rational)
-
-    def _print_Rational(self, expr: sp.Rational) -> str:
-        return f"({expr.p}.0/{expr.q}.0)"
-
-    def _print_Integer(self, expr: sp.Integer) -> str:
-        return f"{int(expr)}.0"
-
-
-_PRINTER = _Printer({"fully_qualified_modules": True})
-
-
 def scene_source(scene: Scene, rows: Rows, shape: Sequence[int]) -> str:
     """The source text of a scene's kernels."""
     varying = ", ".join(rows.names[r] for r in rows.varying) or "none"
@@ -117,46 +94,24 @@ def scene_source(scene: Scene, rows: Rows, shape: Sequence[int]) -> str:
     return header + "\n\n".join(parts)
 
 
-def _indent(lines: Iterable[str], depth: int) -> str:
-    return "".join(" " * 4 * depth + line + "\n" for line in lines)
-
-
-def _assignments(expressions: Sequence[sp.Expr], targets: Sequence[str]) -> list[str]:
-    shared, reduced = sp.cse(list(expressions), symbols=sp.numbered_symbols("c", real=True))
-    lines = [f"{symbol} = {_PRINTER.doprint(expression)}" for symbol, expression in shared]
-    return lines + [f"{t} = {_PRINTER.doprint(e)}" for t, e in zip(targets, reduced, strict=True)]
-
-
-def _renamed(scene: Scene) -> tuple[dict[sp.Symbol, sp.Symbol], list[str], list[str]]:
-    """Coordinates and parameters under names that clash with nothing: q_<name>, p_<name>."""
-    q = {c.symbol: sp.Symbol(f"q_{c.name}", real=True) for c in scene.coordinates}
-    p = {s.symbol: sp.Symbol(f"p_{s.name}", real=True) for s in scene.parameters}
-    return q | p, [str(s) for s in q.values()], [str(s) for s in p.values()]
-
-
-def _used(names: Sequence[str], expressions: Iterable[sp.Expr]) -> list[tuple[int, str]]:
-    free = {str(s) for e in expressions for s in e.free_symbols}
-    return [(i, n) for i, n in enumerate(names) if n in free]
-
-
 def _rows_at(scene: Scene, rows: Rows) -> str:
-    names, q, p = _renamed(scene)
+    names, q, p = renamed(scene)
     expressions = [e.xreplace(names) for e in rows.expressions]
-    lines = [f"{n} = q[{i}]" for i, n in _used(q, expressions)] + [f"{n} = p[{i}]" for i, n in _used(p, expressions)]
-    lines += _assignments(expressions, [f"rows[{r}]" for r in range(len(expressions))])
-    return "@jit\ndef rows_at(q, p, rows):\n" + _indent(lines, 1)
+    lines = [f"{n} = q[{i}]" for i, n in used(q, expressions)] + [f"{n} = p[{i}]" for i, n in used(p, expressions)]
+    lines += assignments(expressions, [f"rows[{r}]" for r in range(len(expressions))])
+    return "@jit\ndef rows_at(q, p, rows):\n" + indent(lines, 1)
 
 
 def _varying_block(scene: Scene, rows: Rows, shape: Sequence[int]) -> str:
-    names, q, p = _renamed(scene)
+    names, q, p = renamed(scene)
     expressions = [rows.expressions[r].xreplace(names) for r in rows.varying]
     moving = [q[i] for i in shape]
-    before = [f"{n} = q[{i}]" for i, n in _used(q, expressions) if n not in moving]
-    before += [f"{n} = p[{i}]" for i, n in _used(p, expressions)]
+    before = [f"{n} = q[{i}]" for i, n in used(q, expressions) if n not in moving]
+    before += [f"{n} = p[{i}]" for i, n in used(p, expressions)]
     inside = [f"{q[i]} = q[{i}] + dq[{j}, i]" for j, i in enumerate(shape)]
-    inside += _assignments(expressions, [f"row_{k}" for k in range(len(expressions))])
+    inside += assignments(expressions, [f"row_{k}" for k in range(len(expressions))])
     inside += [f"values[{k}, i] = row_{k} - base[{r}]" for k, r in enumerate(rows.varying)]
-    body = _indent(before, 1) + "    for i in range(values.shape[1]):\n" + _indent(inside, 2)
+    body = indent(before, 1) + "    for i in range(values.shape[1]):\n" + indent(inside, 2)
     if not rows.varying:
         body = "    return\n"
     return "@jit\ndef varying_block(dq, q, p, base, values):\n" + body
@@ -231,8 +186,8 @@ def _law_block(scene: Scene, rows: Rows) -> str:
         "@jit\ndef law_block(values, room, dv, base, u, direction, length, impulse, multiplier, critical_edge,\n"
         "              branch, along, beyond, across2):\n"
     )
-    loop = "    for i in range(branch.size):\n" + _indent(inside, 2)
-    return signature + "    base_n, base_t = impulse[0], impulse[1]\n" + _indent(before, 1) + loop
+    loop = "    for i in range(branch.size):\n" + indent(inside, 2)
+    return signature + "    base_n, base_t = impulse[0], impulse[1]\n" + indent(before, 1) + loop
 
 
 def _planar_lines(names: _Names, axes: Sequence[str]) -> list[str]:

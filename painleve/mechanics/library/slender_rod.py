@@ -71,5 +71,8 @@ SCENE = make_rod(
                    keys={"theta": "atan(3 - sqrt(5))"}, parameters={"mu": "2"}),
         NamedState(name="double_zero", sentence="gamma = 0 at the least critical friction, where it touches zero",
                    keys={"theta": "atan(2)"}, parameters={"mu": "4/3"}),
+        # "Stoss ohne Kollision": C. Glocker, Dynamik von Starrkoerpersystemen mit Reibung und Stoessen, 1995, 5.3.4
+        NamedState(name="stoss", sentence="ordinary sliding that runs into the singular point at 45 degrees",
+                   keys={"theta": "31*pi/180", "slip": "-30"}, parameters={"mu": "5/3", "gravity": "10"}),
     ),
 )  # fmt: skip
