@@ -85,6 +85,11 @@ class Segment:
     minus: sp.Expr
     plus: sp.Expr
 
+    def __post_init__(self) -> None:
+        # plain numbers are welcome; text is not, for sympify would run it
+        for end in ("minus", "plus"):
+            object.__setattr__(self, end, sp.sympify(getattr(self, end), strict=True))
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Scene:
@@ -175,12 +180,16 @@ def make_scene(
 
     Raises InputError that names the symbol or the shape at fault.
     """
-    coordinates, parameters, keys = tuple(coordinates), tuple(parameters), tuple(keys)
-    _check_names(name, [c.name for c in coordinates] + [p.name for p in parameters])
+    coordinates, parameters, keys, states = tuple(coordinates), tuple(parameters), tuple(keys), tuple(states)
+    fixed = [p.name for p in parameters] + [str(c.velocity) for c in coordinates] + ["t"]
+    _check_names(name, [c.name for c in coordinates] + fixed)
+    _check_names(name, [k.name for k in keys] + fixed)  # a key may be a coordinate
+    _check_names(name, [s.name for s in states])
     q, u, p = ([c.symbol for c in coordinates], [c.velocity for c in coordinates], [s.symbol for s in parameters])
     M = _inertia(name, kinetic_energy, inertia, q, u)
     f = sp.ImmutableMatrix(_applied_force(name, potential, force, q) + gyroscopic_force(M, q, u))
-    displacements = list(tangential_displacements)
+    constraint = sp.sympify(constraint, strict=True)
+    displacements = [sp.sympify(s, strict=True) for s in tangential_displacements]
     H = sp.ImmutableMatrix(len(q), len(displacements), lambda i, j: sp.diff(displacements[j], q[i]))
     _check_friction(name, H, friction)
     time = sp.Symbol("t", real=True)
@@ -194,13 +203,15 @@ def make_scene(
         raise InputError(f"scene {name}: g does not depend on any coordinate; give a constraint g(q) <= 0")
     given = [*(k.symbol for k in keys), *p]
     rules = [placement or {}, velocity or {}, contact_parameters or {}]
-    for rule in rules:
+    targets = ([c.name for c in coordinates], [c.name for c in coordinates], [p.name for p in parameters])
+    for rule, allowed in zip(rules, targets, strict=True):
         _check_symbols(name, "a state key's rule", sp.Matrix(list(rule.values()) or [0]), given)
+        _check_targets(name, rule, allowed)
     return Scene(
         name=name, sentence=sentence, source=source, coordinates=coordinates, parameters=parameters, inertia=M,
-        force=f, constraint=sp.sympify(constraint), tangents=H, friction=friction, keys=keys,
+        force=f, constraint=constraint, tangents=H, friction=friction, keys=keys,
         placement=MappingProxyType(dict(rules[0])), velocity=MappingProxyType(dict(rules[1])),
-        contact_parameters=MappingProxyType(dict(rules[2])), states=tuple(states),
+        contact_parameters=MappingProxyType(dict(rules[2])), states=states,
     )  # fmt: skip
 
 
@@ -250,7 +261,14 @@ def _applied_force(
 def _check_names(scene: str, names: list[str]) -> None:
     twice = sorted({n for n in names if names.count(n) > 1})
     if twice:
-        raise InputError(f"scene {scene}: {', '.join(twice)} is declared twice; every symbol needs a name of its own")
+        raise InputError(f"scene {scene}: {', '.join(twice)} is declared twice; everything needs a name of its own, "
+                         "and t and u_<coordinate> are taken")  # fmt: skip
+
+
+def _check_targets(scene: str, rule: Mapping[str, sp.Expr], allowed: list[str]) -> None:
+    unknown = ", ".join(sorted(set(rule) - set(allowed)))
+    if unknown:
+        raise InputError(f"scene {scene}: a state key's rule gives {unknown}, which is not one of {', '.join(allowed)}")
 
 
 def _check_friction(scene: str, H: sp.MatrixBase, friction: Segment | None) -> None:
@@ -265,4 +283,7 @@ def _check_symbols(scene: str, where: str, expressions: sp.MatrixBase, declared:
     stray = sorted(str(s) for s in expressions.free_symbols - set(declared))
     if stray:
         known = ", ".join(map(str, declared))
-        raise InputError(f"scene {scene}: undeclared symbol {', '.join(stray)} in {where}; declared: {known}")
+        hint = ""
+        if set(stray) & set(map(str, declared)):  # sympy tells symbols of one name apart by what it assumes of them
+            hint = "; build formulas from the `symbol` and `velocity` of what is declared"
+        raise InputError(f"scene {scene}: undeclared symbol {', '.join(stray)} in {where}; declared: {known}{hint}")

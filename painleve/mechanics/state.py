@@ -155,6 +155,9 @@ def _check(state: State) -> None:
             raise InputError(f"{where}: M is not positive definite there; choose another configuration")
     if exact_sign(state.exact(d.gradient_squared)).sign is not Sign.POSITIVE:
         raise InputError(f"{where}: grad g vanishes there; choose another configuration")
+    if d.b is not None and exact_sign(state.exact(d.a * d.C - d.b**2)).sign is not Sign.POSITIVE:
+        raise InputError(f"{where}: the tangential displacement does not vary independently of g there (H3); "
+                         "choose another configuration")  # fmt: skip
     if scene.friction is not None:
         for end in (scene.friction.minus, scene.friction.plus):
             if exact_sign(state.exact(end)).sign not in (Sign.POSITIVE, Sign.ZERO):
