@@ -123,7 +123,7 @@ def exact_number(value: object, *, where: str) -> sympy.Expr:
     """
     if isinstance(value, str):
         return parse_number(value, where=where)
-    if isinstance(value, bool | sympy.logic.boolalg.Boolean):
+    if isinstance(value, bool | sympy.logic.boolalg.BooleanAtom):
         raise InputError(f"{_one_line(where)}: a truth value is not a number (got {value})")
     if isinstance(value, Integral):
         return sympy.Integer(int(value))
