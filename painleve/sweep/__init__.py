@@ -1,6 +1,9 @@
 """Datasets: distances over eps and parameters, members of A_eps for pictures, maps of gamma and of the regimes."""
 
 from painleve.sweep.distances import sweep_distances
+from painleve.sweep.gamma_map import map_gamma
+from painleve.sweep.members import sweep_members
+from painleve.sweep.regimes import map_regimes
 from painleve.sweep.study import StudyResult
 
-__all__ = ["StudyResult", "sweep_distances"]
+__all__ = ["StudyResult", "map_gamma", "map_regimes", "sweep_distances", "sweep_members"]

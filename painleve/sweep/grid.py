@@ -17,7 +17,7 @@ from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import Number, State, make_state
 from painleve.sweep.variables import text
 
-__all__ = ["Grid", "make_grid"]
+__all__ = ["Grid", "make_grid", "meaning"]
 
 RESERVED = {"state", "eps", "law_branch", "coordinate", "member", "path", "friction"}
 
@@ -58,7 +58,7 @@ class Grid:
         """Labels of the states, and the swept values: rounded, and exactly as text."""
         found = {"state": text(["state"], list(self.labels), "label of the exact state (q, u-, parameters)")}
         for name, values in self.over.items():
-            unit, sentence = _meaning(self.scene, name)
+            unit, sentence = meaning(self.scene, name)
             numbers = np.array([float(sp.N(value, 30)) for value in values])
             found[name] = xr.Variable((name,), numbers, {"units": unit, "long_name": f"{sentence} (swept)"})
             found[f"{name}_exact"] = text([name], list(self.spelled[name]), f"exact value of {name} as an expression")
@@ -80,7 +80,7 @@ def make_grid(
     exact: dict[str, tuple[sp.Expr, ...]] = {}
     spelled: dict[str, tuple[str, ...]] = {}
     for name, values in (over or {}).items():
-        _meaning(scene, name)
+        meaning(scene, name)
         if name in RESERVED or name in {*(keys or {}), *(parameters or {})}:
             raise InputError(f"sweep over {name}: this name is taken; it cannot be swept here")
         if not values:
@@ -105,7 +105,7 @@ def _is_key(scene: Scene, name: str) -> bool:
     return name in components or name in {k.name for k in scene.keys}
 
 
-def _meaning(scene: Scene, name: str) -> tuple[str, str]:
+def meaning(scene: Scene, name: str) -> tuple[str, str]:
     """Unit and sentence of a state key, a component of q or u, or a parameter. Raises InputError for another name."""
     for key in scene.keys:
         if key.name == name:

@@ -12,12 +12,24 @@ from painleve.core.codes import Branch as LawBranch
 from painleve.mechanics.scene import Scene
 from painleve.store import flags
 
-__all__ = ["BRANCHES", "LAW_BRANCHES", "OUTCOMES", "STATUSES", "ball_unit", "code", "coded", "text", "velocity_unit"]
+__all__ = [
+    "BRANCHES",
+    "LAW_BRANCHES",
+    "LIMIT_SETS",
+    "OUTCOMES",
+    "STATUSES",
+    "ball_unit",
+    "code",
+    "coded",
+    "text",
+    "velocity_unit",
+]
 
 OUTCOMES = ("done", "failed")
 BRANCHES = tuple(b.value for b in Branch)
 STATUSES = tuple(s.value for s in Status)
 LAW_BRANCHES = tuple(b.label for b in LawBranch)
+LIMIT_SETS = ("point", "pair", "segment", "undecided")
 
 
 def code(label: str, labels: tuple[str, ...]) -> int:

@@ -1,0 +1,160 @@
+"""gamma and the critical friction along a path of touching configurations through each state: the dataset of a map."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from painleve.asymptotics.theorem import classify
+from painleve.errors import InputError
+from painleve.kernels.compiled import Kernels, make_kernels
+from painleve.mechanics.scene import Scene
+from painleve.mechanics.state import Number, State
+from painleve.store import provenance
+from painleve.sweep.grid import make_grid
+from painleve.sweep.variables import BRANCHES, code, coded
+
+__all__ = ["map_gamma"]
+
+REACH = 0.4  # of the path on both sides of the states, in the unit of its coordinate
+HEADROOM = 1.5  # the friction axis goes beyond the largest coefficient at a state by this factor
+NEWTON_STEPS = 12
+TOUCHING = 1e-12  # |g|, in the unit of g, at which Newton's iteration has arrived
+LARGEST_STEP = 0.2  # of the following coordinate between neighbours: beyond it another branch of g = 0 was reached
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Path:
+    """Along one path: a, |b|, |grad g|^2 and the coefficient of friction, (n,) each, NaN where there is no contact."""
+
+    a: np.ndarray
+    b: np.ndarray
+    squared: np.ndarray
+    friction: np.ndarray
+
+    @property
+    def critical(self) -> np.ndarray:
+        """mu_c = a/|b|; NaN where b = 0 and no friction is critical."""
+        return self.a / np.where(self.b > 0.0, self.b, np.nan)
+
+
+def map_gamma(
+    scene: Scene,
+    *,
+    states: Sequence[str] = (),
+    keys: Mapping[str, Number] | None = None,
+    parameters: Mapping[str, Number] | None = None,
+    points: tuple[int, int] = (241, 121),
+    command: str | None = None,
+) -> xr.Dataset:
+    """gamma over (path, coefficient of friction), mu_c and the scene's own friction along the path, and the states.
+
+    The path varies the first coordinate on which the law depends; where it depends on a second one, that one follows
+    the constraint g = 0. Plain floating-point values: a map shows, and the branch of each state is the exact one.
+    States whose curve mu_c is the same share a panel.
+
+    Raises InputError for unknown names, and for a scene without symmetric friction or with more than one path.
+    """
+    kernels = make_kernels(scene)
+    shape = kernels.derivation.shape
+    if kernels.derivation.critical_friction is None or len(shape) not in (1, 2):
+        raise InputError(f"scene {scene.name}: no map: it needs symmetric friction and one path along the contact")
+    grid = make_grid(scene, states=states, keys=keys, parameters=parameters)
+    classified = [classify(grid.state(index)) for index in grid.points()]
+    exact = [c.limit.state for c in classified]
+    places = np.array([state.number(state.q[shape[0]]) for state in exact])
+    values = np.linspace(places.min() - REACH, places.max() + REACH, points[0])
+    paths = [_follow(kernels, state, values) for state in exact]
+    at_state = [_follow(kernels, state, places[i : i + 1]) for i, state in enumerate(exact)]
+    coefficients = np.array([p.friction[0] for p in at_state])
+    friction = np.linspace(0.0, HEADROOM * coefficients.max(), points[1])
+    gamma = np.array([_gamma(path, friction) for path in paths])
+    coordinate, branches = scene.coordinates[shape[0]], [code(c.branch.value, BRANCHES) for c in classified]
+
+    def number(dims: tuple[str, ...], data: np.ndarray, sentence: str, units: str = "1") -> xr.Variable:
+        return xr.Variable(dims, data, {"units": units, "long_name": sentence})
+
+    along = ("state", "path")
+    variables = {
+        "gamma": number(
+            ("state", "path", "friction"), gamma, "gamma, the least normal compliance, in plain floats", "SI"
+        ),
+        "critical_friction": number(
+            along, np.array([p.critical for p in paths]), "critical coefficient of friction mu_c = a/|b|"
+        ),
+        "own_friction": number(
+            along, np.array([p.friction for p in paths]), "coefficient of friction of the scene on the path"
+        ),
+        "state_path": number(("state",), places, f"where the state lies: {coordinate.sentence}", coordinate.unit),
+        "state_friction": number(("state",), coefficients, "coefficient of friction of the scene at the state"),
+        "panel": number(("state",), _panels(paths), "number of the picture; states with the same mu_c share one"),
+        "theorem_branch": coded(["state"], np.array(branches), BRANCHES, "branch of Theorem 1, by exact arithmetic"),
+    }
+    coordinates = grid.coordinates() | {
+        "path": number(("path",), values, coordinate.sentence, coordinate.unit),
+        "friction": number(("friction",), friction, "coefficient of friction as an independent variable"),
+    }
+    title = f"gamma and the critical friction of {scene.name}: {scene.sentence}"
+    source = provenance(scene=scene.name, scene_digest=kernels.digest, seed=0, command=command)
+    attributes = {"title": title, "kind": "gamma_map", "path": coordinate.name, **source}
+    return xr.Dataset(variables, coordinates, attributes)
+
+
+def _gamma(path: _Path, friction: np.ndarray) -> np.ndarray:
+    """(path, friction): (a - mu |b|)/|grad g|^2."""
+    return (path.a[:, None] - path.b[:, None] * friction) / path.squared[:, None]
+
+
+def _panels(paths: list[_Path]) -> np.ndarray:
+    """The first state with the same critical friction, numbered without gaps."""
+    seen: list[np.ndarray] = []
+    numbers = []
+    for path in paths:
+        same = [i for i, curve in enumerate(seen) if np.array_equal(curve, path.critical, equal_nan=True)]
+        if not same:
+            seen.append(path.critical)
+        numbers.append(same[0] if same else len(seen) - 1)
+    return np.array(numbers, dtype=np.int64)
+
+
+def _follow(kernels: Kernels, state: State, values: np.ndarray) -> _Path:
+    """Evaluate the rows along the path, outwards from the state in both senses."""
+    index = kernels.rows.index
+    table = np.full((len(values), len(kernels.rows.names)), np.nan)
+    start = int(np.searchsorted(values, state.number(state.q[kernels.derivation.shape[0]])))
+    for order in (range(start, len(values)), range(start - 1, -1, -1)):
+        q = np.array([state.number(x) for x in state.q])
+        for i in order:
+            rows = _touch(kernels, state, q, values[i])
+            if rows is None:
+                break
+            table[i] = rows
+    normal = slice(1, 1 + kernels.scene.dimension)
+    return _Path(
+        a=table[:, index("a")], b=np.abs(table[:, index("b")]), squared=np.sum(table[:, normal] ** 2, axis=1),
+        friction=table[:, index("mu_plus")],
+    )  # fmt: skip
+
+
+def _touch(kernels: Kernels, state: State, q: np.ndarray, value: float) -> np.ndarray | None:
+    """Move q, in place, to that value of the path's coordinate, with g = 0 again; its rows, or None if it cannot."""
+    p = np.array([state.number(state.parameters[s.name]) for s in state.scene.parameters])
+    rows = np.empty(len(kernels.rows.names))
+    shape = kernels.derivation.shape
+    q[shape[0]] = value
+    kernels.rows_at(q, p, rows)
+    if len(shape) == 1:
+        return rows
+    follower, before = shape[1], q[shape[1]]
+    for _ in range(NEWTON_STEPS):
+        if abs(rows[0]) <= TOUCHING:
+            return rows
+        slope = rows[1 + follower]  # row 1 + i is -dg/dq_i
+        if slope == 0.0 or abs(q[follower] + rows[0] / slope - before) > LARGEST_STEP:
+            return None
+        q[follower] += rows[0] / slope
+        kernels.rows_at(q, p, rows)
+    return None
