@@ -7,12 +7,12 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from painleve.cli import classify, derive, distance, scenes
+from painleve.cli import classify, derive, distance, scenes, study, sweep
 from painleve.errors import InputError
 
 __all__ = ["main"]
 
-COMMANDS = (scenes, derive, classify, distance)
+COMMANDS = (scenes, derive, classify, distance, sweep, study)
 
 
 class _Parser(argparse.ArgumentParser):

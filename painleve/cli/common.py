@@ -11,9 +11,20 @@ from typing import TYPE_CHECKING, Any
 from painleve.errors import InputError
 
 if TYPE_CHECKING:
+    from painleve.mechanics.scene import Scene
     from painleve.mechanics.state import State
 
-__all__ = ["add_command", "add_json", "add_scene", "add_state", "count", "print_json", "read_state", "real"]
+__all__ = [
+    "add_command",
+    "add_json",
+    "add_scene",
+    "add_state",
+    "count",
+    "print_json",
+    "read_state",
+    "read_state_words",
+    "real",
+]
 
 
 def add_command(
@@ -53,16 +64,21 @@ def read_state(options: argparse.Namespace) -> State:
     from painleve.mechanics.state import make_state
 
     scene = load_scene(options.scene)
-    names = [word for word in options.state if "=" not in word]
+    names, keys, parameters = read_state_words(options, scene)
     if len(names) > 1:
         raise InputError(f"--state: {' and '.join(names)} are two names; give one, then KEY=EXPR to change it")
+    return make_state(scene, names[0] if names else None, keys=keys, parameters=parameters)
+
+
+def read_state_words(options: argparse.Namespace, scene: Scene) -> tuple[list[str], dict[str, str], dict[str, str]]:
+    """(names of states, state keys, parameters) as they were given."""
     if not options.state:
         known = ", ".join(s.name for s in scene.states)
         keys = " ".join(f"{k.name}=EXPR" for k in scene.keys)
         raise InputError(f"--state is needed: one of {known}, or {keys}")
+    names = [word for word in options.state if "=" not in word]
     given = _assignments([word for word in options.state if "=" in word], "--state")
-    parameters = _assignments(options.parameters, "--set")
-    return make_state(scene, names[0] if names else None, keys=given, parameters=parameters)
+    return names, given, _assignments(options.parameters, "--set")
 
 
 def _assignments(words: Sequence[str], option: str) -> dict[str, str]:

@@ -28,19 +28,23 @@ def run(options: argparse.Namespace) -> int:
     from painleve.asymptotics.limit_set import limit_set
     from painleve.asymptotics.methods import distance
     from painleve.asymptotics.sample import check_eps
+    from painleve.asymptotics.theorem import SHADOW
+    from painleve.asymptotics.witness import find_family
 
     eps = check_eps(options.eps)
     limit = limit_set(read_state(options))
     with read_method(options) as (name, settings):
         found = distance(limit, eps, name, settings)
+    family = find_family(limit, eps, within=SHADOW * eps)
+    witnessed = None if family is None else family.bound
     if options.json:
-        print_json(found.as_dict())
+        print_json({**found.as_dict(), "witnessed": {"lower": None, "upper": witnessed}})
     else:
-        _print(found)
+        _print(found, witnessed)
     return 0
 
 
-def _print(found: Distance) -> None:
+def _print(found: Distance, witnessed: float | None) -> None:
     state = found.limit.state
     print(f"{state.scene.name}, {state.label}, eps = {found.eps:g}, method {found.method}: {found.ending}")
     for name, attained in (("e(A_eps, A)", found.excess_Aeps_A), ("e(A, A_eps)", found.excess_A_Aeps)):
@@ -49,6 +53,10 @@ def _print(found: Distance) -> None:
             member = attained.member
             print(f"  {'':12} by a member that is {member.branch.label}, dq = {_vector(member.dq)}, "
                   f"dv = {_vector(member.dv)}")  # fmt: skip
+    if witnessed is None:
+        print(f"  {'':12} no witnesses: none were found that shadow all of A")
+    else:
+        print(f"  {'':12} ≤ {witnessed:.4e} (upper bound) by witnesses, built as the proof of Theorem 1 builds them")
     print(f"  {'d_H':12} {found.hausdorff}")
     if found.counts:
         print("  members      " + ", ".join(f"{name} {number}" for name, number in found.counts.items()))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import fields
@@ -27,8 +26,8 @@ def add_method(parser: argparse.ArgumentParser) -> None:
 
 
 @contextmanager
-def read_method(options: argparse.Namespace) -> Iterator[tuple[str, object]]:
-    """(name, options) of the method chosen; a bar on stderr shows progress while the context lasts."""
+def read_method(options: argparse.Namespace, *, quiet: bool = False) -> Iterator[tuple[str, object]]:
+    """(name, options) of the method chosen; unless quiet, a bar on stderr shows progress while the context lasts."""
     from painleve.asymptotics.methods import find_method
 
     kind = find_method(options.method).options
@@ -41,11 +40,11 @@ def read_method(options: argparse.Namespace) -> Iterator[tuple[str, object]]:
         if name not in known:
             raise InputError(f"--{name} is not an option of the method {options.method}")
         given[name] = value
-    if "progress" not in known or "samples" not in known:
+    if quiet or "progress" not in known or "samples" not in known:
         yield options.method, kind(**given)
         return
     from tqdm import tqdm
 
     total = kind(**given).samples
-    with tqdm(total=total, unit=" samples", unit_scale=True, leave=False, delay=1.0, file=sys.stderr) as bar:
+    with tqdm(total=total, unit=" samples", unit_scale=True, leave=False, delay=1.0, disable=None) as bar:
         yield options.method, kind(**given, progress=bar.update)

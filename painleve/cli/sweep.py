@@ -1,0 +1,73 @@
+"""`painleve sweep SCENE`: distances over eps and parameters, kept as HDF5."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+from painleve.cli.common import add_command, add_json, add_scene, add_state, print_json, read_state_words, real
+from painleve.cli.method import add_method, read_method
+from painleve.errors import InputError
+
+
+def register(commands: Any) -> None:
+    parser = add_command(
+        commands, "sweep", run, sentence="measure the distances over eps, states and parameters, and keep them as HDF5",
+        example="painleve sweep slender_rod --state 'theta=atan(2)' --over mu=1,4/3,2 --eps 1e-1 1e-2 1e-3 -o sweep.h5",
+    )  # fmt: skip
+    add_scene(parser)
+    add_state(parser)
+    parser.add_argument("--eps", type=real, nargs="+", required=True, metavar="E", help="radii of the balls")
+    parser.add_argument(
+        "--over", nargs="+", action="extend", default=[], metavar="NAME=EXPR,EXPR,...",
+        help="values of a parameter or a state key to sweep",
+    )  # fmt: skip
+    parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE", help="the HDF5 file to write")
+    add_method(parser)
+    add_json(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    from tqdm import tqdm
+
+    from painleve.mechanics.library import load_scene
+    from painleve.store import check_writable, save
+    from painleve.sweep import sweep_distances
+
+    target = check_writable(options.output)
+    scene = load_scene(options.scene)
+    names, keys, parameters = read_state_words(options, scene)
+    over = _over(options.over)
+    points = max(1, len(names)) * len(options.eps)
+    for values in over.values():
+        points *= len(values)
+    bar = tqdm(total=points, leave=False, delay=1.0, disable=None, file=sys.stderr)  # none where nobody watches
+    with read_method(options, quiet=True) as (method, settings), bar:
+
+        def progress(label: str) -> None:
+            bar.set_postfix_str(label)
+            bar.update()
+
+        dataset = sweep_distances(
+            scene, eps=options.eps, states=names, keys=keys, parameters=parameters, over=over, method=method,
+            options=settings, progress=progress,
+        )  # fmt: skip
+    save(dataset, target)
+    facts = {"file": str(target), "dimensions": {str(k): int(v) for k, v in dataset.sizes.items()}, "points": points}
+    if options.json:
+        print_json(facts)
+    else:
+        print(f"{target}: {points} points; `painleve plot {target}` draws them")
+    return 0
+
+
+def _over(words: list[str]) -> dict[str, list[str]]:
+    table: dict[str, list[str]] = {}
+    for word in words:
+        name, equals, values = word.partition("=")
+        if not equals or not name or not all(v.strip() for v in values.split(",")):
+            raise InputError(f"--over: {word!r} is not NAME=EXPR,EXPR,...")
+        table[name] = [v.strip() for v in values.split(",")]
+    return table

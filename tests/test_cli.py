@@ -1,0 +1,161 @@
+"""The command line keeps its contract with scripts, and answers bad input with one line and status 2."""
+
+import json
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from painleve.cli import main
+from painleve.mechanics.library import SCENE_NAMES, load_scene
+
+NAMED = [(scene, state.name) for scene in SCENE_NAMES for state in load_scene(scene).states]
+
+
+def run_json(capsys: pytest.CaptureFixture[str], *words: str) -> dict:
+    assert main([*words, "--json"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+@pytest.mark.parametrize(("scene", "state"), NAMED)
+def test_classify_answers_with_the_keys_and_values_that_scripts_rely_on(scene, state, capsys):
+    answer = run_json(capsys, "classify", scene, "--state", state)
+    kinds = {"none": "point", "negative": "pair", "critical_approached": "segment", "critical_isolated": "segment"}
+    assert answer["limit_set"] == kinds[answer["branch"]]
+    assert len(answer["u_minus"]) == len(answer["u_tilde"]) == load_scene(scene).dimension
+    assert math.copysign(1, answer["gamma"]) == {"none": 1, "negative": -1}.get(answer["branch"], 1)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "branch"),
+    [
+        (["--set", "mu=4/3"], "critical_approached"),
+        (["--set", "mu=1333333/1000000"], "none"),
+        (["--set", "mu=1333334/1000000"], "negative"),
+        (["slip=1", "--set", "mu=2"], "none"),
+    ],
+)
+def test_classify_parts_frictions_that_differ_by_a_millionth_and_the_senses_of_slip(arguments, branch, capsys):
+    answer = run_json(capsys, "classify", "slender_rod", "--state", "theta=atan(2)", *arguments)
+    assert answer["branch"] == branch
+
+
+def test_a_spin_moves_the_centre_so_that_the_velocity_stays_tangential(capsys):
+    state = ["theta=atan(2)", "slip=-1", "omega=3"]
+    answer = run_json(capsys, "classify", "slender_rod", "--state", *state, "--set", "mu=2")
+    u_x, u_y, omega = answer["u_minus"]
+    assert omega == 3
+    assert u_y == pytest.approx(3 / math.sqrt(5), rel=1e-15)
+    assert u_x + omega * 2 / math.sqrt(5) == pytest.approx(-1, rel=1e-14)
+
+
+def test_distance_answers_with_one_sided_bounds_and_counts_that_add_up(capsys):
+    words = ("distance", "slender_rod", "--state", "paradox", "--eps", "1e-3", "--samples", "1e4")
+    answer = run_json(capsys, *words)
+    assert answer["method"] == "sample"
+    assert answer["eps"] == 1e-3
+    assert answer["excess_Aeps_A"]["upper"] is None
+    assert answer["excess_A_Aeps"]["lower"] is None
+    assert answer["hausdorff"] == {"lower": answer["excess_Aeps_A"]["lower"], "upper": None}
+    assert sum(answer["counts"].values()) == 10_000
+    assert run_json(capsys, *words, "--threads", "1") == answer
+
+
+def test_the_hard_critical_state_is_not_misjudged_although_its_sample_sees_nothing(capsys):
+    words = ("distance", "slender_rod", "--state", "double_zero", "--eps", "1e-6", "--samples", "1e4")
+    answer = run_json(capsys, *words)
+    assert answer["excess_A_Aeps"]["upper"] > 0.1  # the sample's own bound: true, and useless
+    assert answer["witnessed"]["upper"] < 1e-9
+
+
+BAD = [
+    ["classify", "no_such_scene", "--state", "paradox"],
+    ["classify", "slender_rod", "--state", "no_such_state"],
+    ["classify", "slender_rod"],
+    ["classify", "slender_rod", "--state", "paradox", "critical"],
+    ["classify", "slender_rod", "--state", "slip=-1"],
+    ["classify", "slender_rod", "--state", "paradox", "--set", "mu=-1"],
+    ["classify", "slender_rod", "--state", "paradox", "--set", "mu=nan"],
+    ["classify", "slender_rod", "--state", "paradox", "--set", "mu"],
+    ["classify", "slender_rod", "--state", "paradox", "--set", "nu=1"],
+    ["classify", "slender_rod", "--state", "theta=atan(2)", "y=1"],
+    ["classify", "slender_rod", "--state", "theta=atan(2)", "u_y=1"],
+    ["classify", "slender_rod", "--state", "theta=__import__('os').system('echo pwned')"],
+    ["classify", "slender_rod", "--state", "theta=9**9**9**9"],
+    ["classify", "slender_rod", "--state", "theta=1/0"],
+    ["classify", "slender_rod", "--state", "paradox", "--set", "m=0"],
+    ["classify", "two_link_arm", "--state", "phi1=0", "phi2=0"],
+    ["distance", "slender_rod", "--state", "paradox"],
+    ["distance", "slender_rod", "--state", "paradox", "--eps", "0"],
+    ["distance", "slender_rod", "--state", "paradox", "--eps", "-1e-3"],
+    ["distance", "slender_rod", "--state", "paradox", "--eps", "nan"],
+    ["distance", "slender_rod", "--state", "paradox", "--eps", "inf"],
+    ["distance", "slender_rod", "--state", "paradox", "--eps", "1e-3", "--method", "guess"],
+    ["distance", "slender_rod", "--state", "paradox", "--eps", "1e-3", "--sampler", "dice"],
+    ["distance", "slender_rod", "--state", "paradox", "--eps", "1e-3", "--samples", "0"],
+    ["distance", "slender_rod", "--state", "paradox", "--eps", "1e-3", "--samples", "1.5"],
+    ["distance", "slender_rod", "--state", "paradox", "--eps", "1e-3", "--seed", "-1"],
+    ["distance", "slender_rod", "--state", "paradox", "--eps", "1e-3", "--width", "0.1"],
+    ["sweep", "slender_rod", "--state", "paradox", "--eps", "1e-3", "-o", "no/such/folder/x.h5"],
+    ["sweep", "slender_rod", "--state", "paradox", "--eps", "1e-3", "-o", "."],
+    ["sweep", "slender_rod", "--state", "paradox", "--eps", "1e-3", "--over", "mu", "-o", "x.h5"],
+    ["sweep", "slender_rod", "--state", "paradox", "--eps", "1e-3", "--over", "nu=1,2", "-o", "x.h5"],
+    ["study", "no_such_study"],
+    ["derive", "slender_rod", "--latex", "--json"],
+    ["no_such_command"],
+    [],
+]
+
+
+@pytest.mark.parametrize("words", BAD, ids=" ".join)
+def test_bad_input_gives_one_line_on_stderr_status_2_and_no_file(words, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(words) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith("painleve: ")
+    assert captured.err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_error_for_a_state_off_the_constraint_says_by_how_much(capsys):
+    main(["classify", "slender_rod", "--state", "theta=atan(2)", "y=1"])
+    assert f"{2 / math.sqrt(5) - 1:.6g}" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["scenes", "derive", "classify", "distance", "sweep", "study", "plot"])
+def test_every_command_helps_with_an_example(command, capsys):
+    with pytest.raises(SystemExit) as stopped:
+        main([command, "--help"])
+    assert stopped.value.code == 0
+    assert "example: painleve " + command in " ".join(capsys.readouterr().out.split())
+
+
+@pytest.mark.parametrize("scene", SCENE_NAMES)
+def test_a_derivation_is_printed_in_all_three_forms(scene, capsys):
+    assert "critical_friction" in run_json(capsys, "derive", scene)["formulas"]
+    assert main(["derive", scene]) == 0
+    assert "critical friction" in capsys.readouterr().out
+    assert main(["derive", scene, "--latex"]) == 0
+    assert r"\mu_c(q) = " in capsys.readouterr().out
+
+
+def test_a_command_line_in_a_fresh_process_needs_no_heavy_imports_to_help():
+    heavy = ("sympy", "numba", "xarray", "matplotlib")
+    code = f"import sys, painleve.cli; print([m for m in {heavy} if m in sys.modules])"
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert answer.stdout.strip() == "[]"
+
+
+def test_a_sweep_is_written_whole_and_reads_back_with_xarray_alone(tmp_path, capsys):
+    import xarray
+
+    target = tmp_path / "sweep.h5"
+    words = ["sweep", "slender_rod", "--state", "theta=atan(2)", "--over", "mu=1,4/3,2", "--eps", "1e-1", "1e-2"]
+    answer = run_json(capsys, *words, "--samples", "2000", "-o", str(target))
+    assert Path(answer["file"]) == target
+    with xarray.open_dataset(target, engine="h5netcdf") as dataset:
+        assert dataset.sizes["mu"] == 3
+        assert dataset.sizes["eps"] == 2
