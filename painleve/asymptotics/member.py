@@ -17,7 +17,7 @@ from painleve.asymptotics.local import BITS, LocalProblem
 from painleve.core.codes import Branch
 from painleve.mechanics.balls import ball, make_ball_function
 
-__all__ = ["Member", "base_balls", "distance_to_point", "make_member", "row_balls"]
+__all__ = ["Member", "base_balls", "distance_to_point", "jump_balls", "make_member", "row_balls"]
 
 Balls = list[flint.arb]
 
@@ -72,7 +72,7 @@ def _rounded(values: Balls) -> np.ndarray:
 def distance_to_point(problem: LocalProblem, member: Member, fraction: float) -> tuple[float, float]:
     """Enclosure of the distance from a member to u- + fraction (u_tilde - u-)."""
     with flint.ctx.workprec(BITS):
-        jump = _jump(problem)
+        jump = jump_balls(problem)
         share = flint.arb(float(fraction))
         return _outward(_norm([x - share * y for x, y in zip(member.enclosure, jump, strict=True)]))
 
@@ -99,7 +99,8 @@ def base_balls(problem: LocalProblem) -> tuple[Balls, Balls, Balls]:
 
 
 @lru_cache(maxsize=16)
-def _jump(problem: LocalProblem) -> Balls:
+def jump_balls(problem: LocalProblem) -> Balls:
+    """u_tilde - u-."""
     pairs = zip(problem.limit.u_tilde, problem.limit.state.u, strict=True)
     return [ball(problem.limit.state.exact(x - y), bits=BITS) for x, y in pairs]
 
@@ -140,7 +141,7 @@ def _certain(yes: bool, no: bool, what: str) -> bool:
 
 
 def _distance_to_limit(problem: LocalProblem, offset: Balls) -> flint.arb:
-    zero, jump = [flint.arb(0)] * len(offset), _jump(problem)
+    zero, jump = [flint.arb(0)] * len(offset), jump_balls(problem)
     to_start, to_end = _norm(offset), _norm([x - y for x, y in zip(offset, jump, strict=True)])
     if problem.limit.kind == "point":
         return to_start
