@@ -27,10 +27,13 @@ __all__ = ["Sign", "Signed", "exact_sign"]
 
 _PRECISIONS = (64, 256, 1024)
 _MAX_WORK = 10**9  # evaluations times cost of their operations times bits: about half a second
-_MAX_TURNS = 64  # the largest multiple of an angle that is expanded
+_MAX_TURNS = 64  # the largest multiple of an inverse function's value that is expanded
+_MAX_UNITS = 16  # the largest multiple of an unknown angle or exponent
+_MAX_MIXED_UNITS = 8  # the same where it is measured in two units
+_MAX_LENGTH = 10_000  # nodes of a rewritten expression
 _GRIDS = 4  # attempts at a grid of points on which nothing is divided by zero
 
-_Angle = tuple[sympy.Expr, sympy.Expr]  # a cosine and a sine
+_Direction = tuple[sympy.Expr, sympy.Expr, sympy.Expr]  # (x, y, r): cosine x/r, sine y/r, r > 0, divided late
 
 
 class Sign(Enum):
@@ -227,10 +230,10 @@ def _fraction(form: sympy.Expr, unknown: sympy.Symbol, memo: dict[sympy.Expr, _F
 
 
 def _new_fraction(form: sympy.Expr, unknown: sympy.Symbol, memo: dict[sympy.Expr, _Fraction]) -> _Fraction:
-    if unknown not in form.free_symbols:
-        return _Fraction(0, {})
     if form == unknown:
         return _Fraction(1, {})
+    if not form.args or (form.is_Pow and not form.exp.is_Integer) or isinstance(form, sympy.CRootOf):
+        return _Fraction(0, {})  # another unknown or a constant: no root holds an unknown any more
     if form.is_Pow:
         return _fraction_of_power(form.base, int(form.exp), _fraction(form.base, unknown, memo))
     parts = [_fraction(part, unknown, memo) for part in form.args]
@@ -258,7 +261,7 @@ def _check_identity(form: sympy.Expr, unknowns: Sequence[sympy.Symbol]) -> None:
     """Prove that a rational function is zero on a grid with one point more a side than the degree of its numerator."""
     sides = [_fraction(form, unknown, {}).above + 1 for unknown in unknowns]
     points = math.prod(sides)
-    largest = _Size(_log2_above(_GRIDS * (max(sides) + 2 * len(unknowns))), 0)
+    largest = _Size(_log2_above(max(_starts(sides, _GRIDS)) + max(sides)), 0)
     separation = _separation(form, dict.fromkeys(unknowns, largest))
     _check_work(points, form, separation + 256)
     for attempt in range(_GRIDS):
@@ -267,9 +270,13 @@ def _check_identity(form: sympy.Expr, unknowns: Sequence[sympy.Symbol]) -> None:
     raise _Undecidable("no grid of points was found on which it is defined")
 
 
+def _starts(sides: Sequence[int], attempt: int) -> list[int]:
+    """First integers for the unknowns, so that no two take the same value: differences are the likeliest divisors."""
+    return [2 + attempt + (max(sides) + 1) * ((attempt + 2) ** i - 1) for i in range(len(sides))]
+
+
 def _grid(sides: Sequence[int], attempt: int) -> Iterator[tuple[int, ...]]:
-    """Integers from 2 up, other ones for each unknown and attempt."""
-    starts = [2 + 2 * i + attempt * max(sides) for i in range(len(sides))]
+    starts = _starts(sides, attempt)
     return itertools.product(*(range(start, start + side) for start, side in zip(starts, sides, strict=True)))
 
 
@@ -299,6 +306,8 @@ class _Rewriter:
     def __init__(self, expr: sympy.Expr) -> None:
         self._unknowns: dict[sympy.Expr, sympy.Symbol] = {}
         self._memo: dict[sympy.Expr, sympy.Expr] = {}
+        self._lengths: dict[sympy.Basic, int] = {}
+        self._check_length(expr)
         self._angle_units = _units(expr, _CIRCULAR)
         self._exponent_units = _units(expr, _EXPONENTIAL)
 
@@ -314,7 +323,18 @@ class _Rewriter:
     def _rewrite(self, expr: sympy.Expr) -> sympy.Expr:
         if expr not in self._memo:
             self._memo[expr] = self._rewritten(expr)
+            self._check_length(self._memo[expr])
         return self._memo[expr]
+
+    def _check_length(self, *forms: sympy.Expr) -> None:
+        if sum(map(self._length, forms)) > _MAX_LENGTH:
+            raise _Undecidable("within 2^-1000 or so of zero, and too long when written out for a proof")
+
+    def _length(self, form: sympy.Expr) -> int:
+        """Of the written-out tree, without writing it out: equal parts are counted once and looked up."""
+        if form not in self._lengths:
+            self._lengths[form] = 1 + sum(map(self._length, form.args))
+        return self._lengths[form]
 
     def _rewritten(self, expr: sympy.Expr) -> sympy.Expr:
         if expr.is_Rational or isinstance(expr, sympy.CRootOf):
@@ -324,7 +344,7 @@ class _Rewriter:
         if expr.is_Pow:
             return _root(self._rewrite(expr.base), expr.exp.q) ** expr.exp.p
         if expr.func in _CIRCULAR:
-            return _CIRCULAR[expr.func](*self._angle(_argument(expr)))
+            return _CIRCULAR[expr.func](*self._direction(_argument(expr)))
         if expr.func in _EXPONENTIAL:
             return _EXPONENTIAL[expr.func](self._exponential(_argument(expr)))
         if isinstance(expr, sympy.Abs | sympy.sign):
@@ -342,43 +362,39 @@ class _Rewriter:
         return sympy.Integer(sign) if isinstance(expr, sympy.sign) else sign * self._rewrite(expr.args[0])
 
     def _exponential(self, exponent: sympy.Expr) -> sympy.Expr:
-        product = sympy.Integer(1)
-        for part, coefficient in _parts(exponent):
-            unit = _unit(self._exponent_units, part, coefficient)
-            product *= self._unknown(sympy.exp(unit * part)) ** (coefficient / unit)
-        return product
+        powers = _measured_parts(self._exponent_units, exponent)
+        return sympy.Mul(*(self._unknown(sympy.exp(unit * part)) ** n for part, unit, n in powers))
 
-    def _angle(self, angle: sympy.Expr) -> _Angle:
-        """Cosine and sine of a sum of rational multiples of known and unknown angles."""
-        total: _Angle = (sympy.Integer(1), sympy.Integer(0))
-        for part, coefficient in _parts(angle):
-            total = _sum_of_angles(total, self._multiple(part, coefficient))
+    def _direction(self, angle: sympy.Expr) -> _Direction:
+        """The direction of a sum of whole multiples of known and unknown angles."""
+        total: _Direction = (sympy.Integer(1), sympy.Integer(0), sympy.Integer(1))
+        for part, unit, n in _measured_parts(self._angle_units, angle):
+            total = _sum_of_angles(total, self._multiple(part, unit, n))
+            self._check_length(*total)
         return total
 
-    def _multiple(self, part: sympy.Expr, coefficient: sympy.Rational) -> _Angle:
+    def _multiple(self, part: sympy.Expr, unit: sympy.Rational, n: int) -> _Direction:
         if part == sympy.pi:
-            cosine, sine = sympy.cos(coefficient * part), sympy.sin(coefficient * part)
+            cosine, sine = sympy.cos(n * unit * part), sympy.sin(n * unit * part)
             if not (cosine.has(*_CIRCULAR) or sine.has(*_CIRCULAR)):
-                return cosine, sine
-        unit = _unit(self._angle_units, part, coefficient)
+                return cosine, sine, sympy.Integer(1)
         if part.func in _INVERSES and unit.q & (unit.q - 1) == 0:
-            return _turned(self._known(part, int(unit.q)), int(coefficient * unit.q))
-        return _turned(_from_half_tangent(self._unknown(sympy.tan(unit * part / 2))), int(coefficient / unit))
+            return _turned(self._known(part, int(unit.q)), n * int(unit.p))
+        u = self._unknown(sympy.tan(unit * part / 2))
+        return _turned((1 - u**2, 2 * u, 1 + u**2), n)
 
-    def _known(self, part: sympy.Expr, n: int) -> _Angle:
-        """Cosine and sine of an inverse function's value over n, a power of two, by bisection."""
+    def _known(self, part: sympy.Expr, n: int) -> _Direction:
+        """The direction of an inverse function's value over n, a power of two, by bisection."""
         if n > 1:  # the values of all inverse functions lie in (-pi, pi]: half of them have no negative cosine
-            cosine, sine = self._known(part, n // 2)
-            half = _root((1 + cosine) / 2, 2)
-            return half, sine / (2 * half)
-        x, *rest = map(self._rewrite, part.args)
+            x, y, r = self._known(part, n // 2)
+            return r + x, y, _root(2 * r * (r + x), 2)
+        y, *rest = map(self._rewrite, part.args)
         if isinstance(part, sympy.asin):
-            return _root(1 - x**2, 2), x
+            return _root(1 - y**2, 2), y, sympy.Integer(1)
         if isinstance(part, sympy.acos):
-            return x, _root(1 - x**2, 2)
-        abscissa = rest[0] if rest else sympy.Integer(1)
-        length = _root(x**2 + abscissa**2, 2)
-        return abscissa / length, x / length
+            return y, _root(1 - y**2, 2), sympy.Integer(1)
+        x = rest[0] if rest else sympy.Integer(1)
+        return x, y, _root(x**2 + y**2, 2)
 
 
 def _root(base: sympy.Expr, k: int) -> sympy.Expr:
@@ -394,14 +410,14 @@ def _root(base: sympy.Expr, k: int) -> sympy.Expr:
 
 _INVERSES = (sympy.atan, sympy.asin, sympy.acos, sympy.atan2)
 
-_CIRCULAR: Mapping[type[sympy.Basic], Callable[[sympy.Expr, sympy.Expr], sympy.Expr]] = MappingProxyType(
+_CIRCULAR: Mapping[type[sympy.Basic], Callable[[sympy.Expr, sympy.Expr, sympy.Expr], sympy.Expr]] = MappingProxyType(
     {
-        sympy.cos: lambda c, s: c,
-        sympy.sin: lambda c, s: s,
-        sympy.tan: lambda c, s: s / c,
-        sympy.cot: lambda c, s: c / s,
-        sympy.sec: lambda c, s: 1 / c,
-        sympy.csc: lambda c, s: 1 / s,
+        sympy.cos: lambda x, y, r: x / r,
+        sympy.sin: lambda x, y, r: y / r,
+        sympy.tan: lambda x, y, r: y / x,
+        sympy.cot: lambda x, y, r: x / y,
+        sympy.sec: lambda x, y, r: r / x,
+        sympy.csc: lambda x, y, r: r / y,
     }
 )
 
@@ -433,46 +449,62 @@ def _units(expr: sympy.Expr, functions: Mapping[type[sympy.Basic], object]) -> _
     for call in expr.atoms(*functions):
         for part, coefficient in _parts(_argument(call)):
             multiples.setdefault(part, set()).add(abs(coefficient))
-    return {part: _common_units(sorted(coefficients)) for part, coefficients in multiples.items()}
+    ascending = {part: sorted(coefficients) for part, coefficients in multiples.items()}
+    return {part: min((_common_units(c, merge) for merge in (False, True)), key=len) for part, c in ascending.items()}
 
 
-def _common_units(coefficients: Sequence[sympy.Rational]) -> list[sympy.Rational]:
-    """Few units of which every coefficient is a whole multiple, none of them more than _MAX_TURNS times its unit."""
+def _common_units(coefficients: Sequence[sympy.Rational], merge: bool) -> list[sympy.Rational]:
+    """Units of which every coefficient is a small whole multiple, or the sum of such multiples of two units.
+
+    A coefficient that they do not measure refines a unit to a common divisor (`merge`), or becomes one more unit.
+    """
     units: list[sympy.Rational] = []
     for coefficient in coefficients:  # upwards: this one is the largest that its unit has to serve
-        for i, unit in enumerate(units):
-            common = sympy.Rational(math.gcd(unit.p, coefficient.p), math.lcm(unit.q, coefficient.q))
-            if coefficient / common <= _MAX_TURNS:
-                units[i] = common
-                break
-        else:
-            units.append(coefficient)
+        if _measured(units, coefficient) is None:
+            common = ((i, _common_divisor(unit, coefficient)) for i, unit in enumerate(units) if merge)
+            place, unit = next(((i, c) for i, c in common if coefficient / c <= _MAX_UNITS), (len(units), coefficient))
+            units[place : place + 1] = [unit]
     return units
 
 
-def _unit(units: _Units, part: sympy.Expr, coefficient: sympy.Rational) -> sympy.Rational:
-    turns = ((unit, abs(coefficient / unit)) for unit in units[part])
-    return next(unit for unit, n in turns if n.is_Integer and n <= _MAX_TURNS)
+def _common_divisor(first: sympy.Rational, second: sympy.Rational) -> sympy.Rational:
+    return sympy.Rational(math.gcd(first.p, second.p), math.lcm(first.q, second.q))
 
 
-def _sum_of_angles(first: _Angle, second: _Angle) -> _Angle:
-    (c, s), (d, t) = first, second
-    return c * d - s * t, s * d + c * t
+def _measured(units: Sequence[sympy.Rational], coefficient: sympy.Rational) -> list[tuple[sympy.Rational, int]] | None:
+    """The coefficient as a small whole multiple of one unit, or a sum of multiples of two (angles and differences)."""
+    for unit in units:
+        turns = coefficient / unit
+        if turns.is_Integer and abs(turns) <= _MAX_UNITS:
+            return [(unit, int(turns))]
+    small = sorted(range(-_MAX_MIXED_UNITS, _MAX_MIXED_UNITS + 1), key=abs)
+    for (first, second), n in itertools.product(itertools.combinations(units, 2), small):
+        rest = (coefficient - n * first) / second
+        if rest.is_Integer and abs(rest) <= _MAX_MIXED_UNITS:
+            return [(first, n), (second, int(rest))]
+    return None
 
 
-def _turned(angle: _Angle, n: int) -> _Angle:
-    """n times an angle, by repeated doubling."""
+def _measured_parts(units: _Units, expr: sympy.Expr) -> list[tuple[sympy.Expr, sympy.Rational, int]]:
+    """The terms of an angle or exponent as parts, their units and whole multiples of these."""
+    measured = []
+    for part, coefficient in _parts(expr):
+        multiples = _measured(units[part], coefficient)
+        if multiples is None:
+            raise _Undecidable(f"no unit was found for {coefficient * part}")
+        measured += [(part, unit, n) for unit, n in multiples]
+    return measured
+
+
+def _sum_of_angles(first: _Direction, second: _Direction) -> _Direction:
+    (x, y, r), (u, v, q) = first, second
+    return x * u - y * v, y * u + x * v, r * q
+
+
+def _turned(direction: _Direction, n: int) -> _Direction:
+    """n times an angle: de Moivre's formula."""
     if abs(n) > _MAX_TURNS:
         raise _Undecidable(f"an angle is multiplied by {n}, more than {_MAX_TURNS}")
-    if n < 0:
-        cosine, sine = _turned(angle, -n)
-        return cosine, -sine
-    if n == 0:
-        return sympy.Integer(1), sympy.Integer(0)
-    half = _turned(angle, n // 2)
-    doubled = _sum_of_angles(half, half)
-    return _sum_of_angles(doubled, angle) if n % 2 else doubled
-
-
-def _from_half_tangent(u: sympy.Expr) -> _Angle:
-    return (1 - u**2) / (1 + u**2), 2 * u / (1 + u**2)
+    x, y, r = direction if n >= 0 else (direction[0], -direction[1], direction[2])
+    terms = [(-1) ** (k // 2) * math.comb(abs(n), k) * x ** (abs(n) - k) * y**k for k in range(abs(n) + 1)]
+    return sympy.Add(*terms[::2]), sympy.Add(*terms[1::2]), r ** abs(n)
