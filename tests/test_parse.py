@@ -19,7 +19,7 @@ from painleve.mechanics.parse import exact_number, parse_expression, parse_numbe
 
 X, MU = sympy.symbols("x mu", real=True)
 SYMBOLS = {"x": X, "mu": MU}
-SECONDS = 2.0  # far above the milliseconds that a text takes, far below what a power tower would take
+SECONDS = 2.0  # of the processor: far above the milliseconds that a text takes, far below a power tower
 
 HOSTILE = [
     "__import__('os').system('touch pwned')",
@@ -232,9 +232,9 @@ def test_hostile_text_is_refused_at_once_in_one_line_and_executes_nothing(
     text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    start = time.perf_counter()
+    start = time.process_time()
     message = refusal(text)
-    assert time.perf_counter() - start < SECONDS
+    assert time.process_time() - start < SECONDS
     assert message.startswith("slender_rod, mu: ")
     assert message.isprintable()
     assert len(message) < 500
@@ -248,13 +248,13 @@ FRAGMENTS = """0 1 2 64 0.1 1e-3 1e300 x mu pi I lambda eval __class__ sin cos a
 @given(st.text(max_size=60) | st.lists(st.sampled_from([*FRAGMENTS.split(), "\n", "\x00"]), max_size=40).map("".join))
 @settings(max_examples=600)
 def test_any_text_is_read_or_refused_in_one_line_and_never_takes_long(text: str) -> None:
-    start = time.perf_counter()
+    start = time.process_time()
     refused, value = None, None
     try:
         value = parse_expression(text, SYMBOLS, where="state")
     except InputError as error:
         refused = str(error)
-    assert time.perf_counter() - start < SECONDS
+    assert time.process_time() - start < SECONDS
     assert refused.isprintable() if value is None else value.free_symbols <= {X, MU}
 
 

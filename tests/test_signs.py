@@ -14,7 +14,7 @@ from sympy import Rational, acos, asin, atan, atan2, cos, cosh, cot, exp, log, p
 
 from painleve.mechanics.signs import Sign, exact_sign
 
-SECONDS = 2.0
+SECONDS = 2.0  # of the processor
 X = sympy.Symbol("x")
 CUBIC = sympy.CRootOf(5 * X**3 - 7 * X**2 + 2 * X - 1, 0)
 QUADRATIC = sympy.CRootOf(X**2 - 6 * X + 4, 0)  # 3 - sqrt(5), where the rod with mu = 2 is critical
@@ -152,9 +152,9 @@ def roots_against_decimals(digits: int) -> sympy.Expr:
     ids=lambda expr: str(expr)[:40],
 )
 def test_what_is_not_decided_says_why_and_does_not_take_long(expr: sympy.Expr) -> None:
-    start = time.perf_counter()
+    start = time.process_time()
     signed = exact_sign(expr)
-    assert time.perf_counter() - start < SECONDS
+    assert time.process_time() - start < SECONDS
     assert signed.reason
     if signed.sign is not Sign.UNDECIDED:
         assert _agrees(signed.sign, expr, 8000)
