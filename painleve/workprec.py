@@ -1,0 +1,105 @@
+"""Error against work: small typed records, so that a chart shows what accuracy costs and which runs failed."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+__all__ = ["MISLEADING_FACTOR", "Outcome", "Record", "Run", "measure"]
+
+MISLEADING_FACTOR = 2.0  # a number further off than this is no estimate of the reference, whatever it bounds
+
+
+class Outcome(Enum):
+    """How a run ended. MISLEADING: it ended well, and its number is more than MISLEADING_FACTOR off the reference."""
+
+    DONE = "done"
+    MISLEADING = "misleading"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Run:
+    """What one run of a method found: the number a reader takes from it, and the evaluations spent.
+
+    `proved`: a proved bound on the distance of that number to the truth; NaN where the method proves none.
+    """
+
+    value: float
+    evaluations: int
+    proved: float = math.nan
+    sentence: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Record:
+    """One point of a work-precision chart; `error` and `proved` are relative to the reference, NaN if the run failed.
+
+    `seconds` is the median over warm runs, `first_seconds` the first call, with whatever it compiles or loads.
+    """
+
+    problem: str
+    method: str
+    setting: float
+    value: float
+    reference: float
+    error: float
+    proved: float
+    evaluations: int
+    first_seconds: float
+    seconds: float
+    outcome: Outcome
+    sentence: str
+
+
+def measure(
+    problem: str,
+    method: str,
+    setting: float,
+    run: Callable[[], Run],
+    *,
+    reference: float,
+    repetitions: int = 3,
+    patience: float = 1.0,
+    clock: Callable[[], float] = time.perf_counter,
+) -> Record:
+    """Run a method once cold, then warm: `repetitions` times, or until `patience` seconds are spent, but once at least.
+
+    An ArithmeticError or a ValueError of the run becomes a failed record with its message: a chart shows it.
+    Raises ValueError unless the reference is positive and finite.
+    """
+    if not (math.isfinite(reference) and reference > 0.0):
+        raise ValueError(f"{problem}: the reference {reference} must be positive for errors to be relative to it")
+    start = clock()
+    try:
+        found = run()
+        first = clock() - start
+        warm = _warm_runs(run, repetitions, patience, clock)
+        outcome = _judge(found.value, reference)
+    except (ArithmeticError, ValueError) as error:
+        found = Run(value=math.nan, evaluations=0, sentence=str(error))
+        first, warm, outcome = clock() - start, math.nan, Outcome.FAILED
+    return Record(
+        problem=problem, method=method, setting=setting, value=found.value, reference=reference,
+        error=abs(found.value - reference) / reference, proved=found.proved / reference, evaluations=found.evaluations,
+        first_seconds=first, seconds=warm, outcome=outcome, sentence=found.sentence,
+    )  # fmt: skip
+
+
+def _warm_runs(run: Callable[[], Run], repetitions: int, patience: float, clock: Callable[[], float]) -> float:
+    seconds: list[float] = []
+    while not seconds or (len(seconds) < repetitions and sum(seconds) < patience):
+        start = clock()
+        run()
+        seconds.append(clock() - start)
+    return float(np.median(seconds))
+
+
+def _judge(value: float, reference: float) -> Outcome:
+    near = reference / MISLEADING_FACTOR <= value <= reference * MISLEADING_FACTOR
+    return Outcome.DONE if near else Outcome.MISLEADING
