@@ -1,0 +1,44 @@
+"""The one time loop of all fixed-step schemes, in compiled chunks, so that Ctrl-C comes through."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from painleve.core.codes import Branch
+from painleve.core.motion_codes import Ending
+from painleve.dynamics.grid import Grid
+from painleve.dynamics.start import Start
+from painleve.dynamics.trajectory import Trajectory
+
+__all__ = ["run_fixed_step"]
+
+CHUNK = 100_000  # steps: some ten milliseconds
+
+
+def run_fixed_step(
+    name: str, code: int, theta: float, lag: float, start: Start, grid: Grid, tolerance: float
+) -> Trajectory:
+    """Step through the grid with the compiled scheme of that code, to its end or to the first step that fails."""
+    n, d = len(grid.h), start.scene.dimension
+    q, u, r = np.zeros((n + 1, d)), np.zeros((n + 1, d)), np.zeros((n + 1, 2))
+    branch, change, several = (np.zeros(n + 1, np.int8) for _ in range(3))
+    q[0], u[0] = start.q, start.u
+    done, since, ending = 0, 0, Ending.REACHED_END
+    try:
+        while done < n and ending is Ending.REACHED_END:
+            rest = slice(done, min(done + CHUNK, n) + 1)
+            steps = grid.h[done : done + CHUNK]
+            taken, status, since = start.motion.run(
+                code, theta, tolerance, since, grid.t[rest], steps, start.p, q[rest], u[rest], r[rest], branch[rest],
+                change[rest], several[rest],
+            )  # fmt: skip
+            done, ending = done + taken, Ending(status)
+    except KeyboardInterrupt:
+        ending = Ending.INTERRUPTED
+    kept = slice(0, done + 1)
+    counts = {b.label: int((branch[1 : done + 1] == b).sum()) for b in Branch}
+    return Trajectory(
+        scheme=name, start=start, settings={"contact_tolerance": tolerance, "theta": theta}, t=grid.t[kept],
+        q=q[kept], u=u[kept], r=r[kept], branch=branch[kept], change=change[kept], lag=lag, ending=ending,
+        statistics={**counts, "steps_with_several_solutions": int((several[kept] > 1).sum())},
+    )  # fmt: skip

@@ -1,0 +1,70 @@
+"""What a scheme is: a name, its source and order, and how it makes a trajectory."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from painleve.core.motion_codes import FixedStep
+from painleve.dynamics.fixed_step import run_fixed_step
+from painleve.dynamics.grid import Grid
+from painleve.dynamics.start import Start
+from painleve.dynamics.trajectory import Trajectory
+from painleve.errors import InputError
+
+__all__ = ["Integrated", "Scheme", "Stepped"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scheme:
+    """A method: `order` is that of its velocity where the motion is smooth; `options` are numbers with their defaults.
+
+    `tests_contact`: whether contact is found by testing g(q) >= -tolerance; other methods impose g(q) <= 0 itself.
+    """
+
+    name: str
+    sentence: str
+    source: str
+    order: int
+    tests_contact: bool = True
+    options: Mapping[str, float] = field(default_factory=dict)
+
+    def run(self, start: Start, grid: Grid, tolerance: float, options: Mapping[str, float]) -> Trajectory:
+        raise NotImplementedError
+
+    def settings(self, tolerance: float, given: Mapping[str, float] | None) -> dict[str, float]:
+        """The options with defaults. Raises InputError for an unknown one or a tolerance that the method cannot use."""
+        if not (tolerance >= 0.0 and tolerance < float("inf")):
+            raise InputError(f"contact_tolerance: {tolerance} must be zero or a positive number")
+        if tolerance > 0.0 and not self.tests_contact:
+            raise InputError(f"contact_tolerance: {self.name} imposes g(q) <= 0 without a contact test; leave it at 0")
+        for name in given or {}:
+            if name not in self.options:
+                known = ", ".join(self.options) or "none"
+                raise InputError(f"scheme {self.name}: no option {name!r}; it has: {known}")
+        return {**self.options, **(given or {})}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stepped(Scheme):
+    """A compiled scheme of the one time loop; `lag(theta)`: see Trajectory.lag."""
+
+    code: FixedStep
+    lag: Callable[[float], float] = lambda theta: 0.0
+
+    def run(self, start: Start, grid: Grid, tolerance: float, options: Mapping[str, float]) -> Trajectory:
+        theta = options.get("theta", 0.0)
+        if not 0.0 <= theta <= 1.0:
+            raise InputError(f"scheme {self.name}: theta = {theta} must be between 0 and 1")
+        return run_fixed_step(self.name, int(self.code), theta, self.lag(theta), start, grid, tolerance)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Integrated(Scheme):
+    """A method on top of an adaptive integrator; the grid says where the trajectory is recorded."""
+
+    integrate: Callable[[Start, Grid, Mapping[str, float]], Trajectory]
+    tests_contact: bool = False
+
+    def run(self, start: Start, grid: Grid, tolerance: float, options: Mapping[str, float]) -> Trajectory:
+        return self.integrate(start, grid, options)

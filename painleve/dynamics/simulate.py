@@ -1,0 +1,45 @@
+"""One trajectory by any scheme."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from painleve.dynamics.grid import make_grid
+from painleve.dynamics.proposition1 import check_proposition1
+from painleve.dynamics.schemes import load_scheme
+from painleve.dynamics.start import Start, as_start
+from painleve.dynamics.trajectory import Trajectory
+from painleve.mechanics.state import State
+
+__all__ = ["simulate"]
+
+
+def simulate(
+    start: Start | State,
+    *,
+    scheme: str = "contact_dynamics",
+    step: float | Sequence[float] | np.ndarray,
+    until: float,
+    contact_tolerance: float = 0.0,
+    options: Mapping[str, float] | None = None,
+    monitor: bool = True,
+) -> Trajectory:
+    """The trajectory from `start` over the time `until`, by the scheme of that name with constant or given steps.
+
+    Contact is where g(q) >= -contact_tolerance; 0 is the paper's test. `monitor` adds the margins of Proposition 1,
+    which is about the scheme contact_dynamics. A method that cannot go on ends with a value that says why, and Ctrl-C
+    ends it with what there is. Raises InputError for bad input.
+    """
+    method, beginning = load_scheme(scheme), as_start(start)
+    settings = method.settings(contact_tolerance, options)
+    grid = make_grid(beginning.t, step, until)
+    result = method.run(beginning, grid, contact_tolerance, settings)
+    if not monitor or scheme != "contact_dynamics":
+        return result
+    margins = check_proposition1(
+        beginning, result.t, grid.h[: result.steps], result.q, result.u, contact_tolerance
+    )  # fmt: skip
+    return replace(result, proposition1=margins)
