@@ -147,11 +147,12 @@ def test_single_components_override_what_the_keys_say():
     assert state.u == (-3, 0, 0)
 
 
-def test_numbers_are_rounded_from_30_digits_so_that_cancellation_does_not_show():
+def test_numbers_are_rounded_from_enough_digits_that_cancellation_does_not_show():
     state = make_state(ROD, "critical")
-    nearly = sp.sin(state.q[2]) - sp.Rational("0.6071") - sp.Rational(1, 10**25) - sp.sin(state.q[2]) + sp.Rational(
-        "0.6071")  # fmt: skip
-    assert state.number(nearly) == -1e-25
+    sine, tenth = sp.sin(state.q[2]), sp.Rational(1, 10)
+    assert state.number(sine + tenth**25 - sp.sqrt(1 - sp.cos(state.q[2]) ** 2)) == 1e-25
+    assert state.number(sine + tenth**300 - sp.sqrt(1 - sp.cos(state.q[2]) ** 2)) == 1e-300
+    assert str(state.number(sine - sp.sqrt(1 - sp.cos(state.q[2]) ** 2))) == "0.0"
 
 
 # --- wrong states ----------------------------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ from typing import TypeAlias
 import sympy as sp
 
 from painleve.errors import InputError
+from painleve.mechanics.balls import ball
 from painleve.mechanics.derive import derive
 from painleve.mechanics.parse import exact_number, parse_expression
 from painleve.mechanics.scene import Scene
@@ -41,8 +42,16 @@ class State:
         return expression.xreplace(self.substitution)
 
     def number(self, expression: sp.Expr) -> float:
-        """The value rounded to a float (from 30 digits, so that cancellation does not show)."""
-        return float(sp.N(self.exact(expression), 30, maxn=400))
+        """The value rounded to a float, from as many digits as it takes for cancellation not to show.
+
+        0 where 2048 bits see nothing else, NaN where there is no value.
+        """
+        value = self.exact(expression)
+        for bits in (128, 512, 2048):
+            enclosure = ball(value, bits=bits)
+            if enclosure.rel_accuracy_bits() >= 64:
+                break
+        return float(enclosure.mid()) + 0.0  # no negative zero
 
 
 def make_state(
