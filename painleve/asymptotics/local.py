@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Literal
 
 import flint
@@ -17,6 +17,7 @@ import numpy as np
 import sympy as sp
 
 from painleve.asymptotics.limit_set import LimitSet
+from painleve.core.taylor import Polynomials, sparse_polynomials
 from painleve.kernels.compiled import Kernels, make_kernels
 from painleve.mechanics.balls import ball
 from painleve.mechanics.jets import jets, monomials
@@ -33,16 +34,11 @@ BITS = 320
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Expansion:
-    """Polynomials for the varying rows, by rising degree, without the constant term.
-
-    `parents`, `factors`: how each monomial is made (painleve.core.taylor). `truncation`: estimate of the largest
-    relative error of a row on the ball, from the degrees left out.
-    """
+    """Polynomials for the varying rows: the highest of their degrees, and an estimate of the largest relative error of
+    a row on the ball, from the degrees left out."""
 
     order: int
-    parents: np.ndarray
-    factors: np.ndarray
-    coefficients: np.ndarray
+    polynomials: Polynomials
     truncation: float
 
 
@@ -89,21 +85,31 @@ class LocalProblem:
         return np.array([sum(powers) for powers in self.powers], dtype=int)
 
     def expansion(self, eps: float, arithmetic: Arithmetic = "automatic") -> Expansion | None:
-        """The lowest order that is accurate on balls of radius eps; None: evaluate the rows plainly."""
+        """The lowest order of each row that is accurate on balls of radius eps; None: evaluate the rows plainly."""
         if arithmetic == "plain":
             return None
         highest = int(self.degrees.max(initial=0))
-        size = np.abs(self.table) * float(eps) ** self.degrees
-        for order in range(min(2, highest), highest + 1):
-            kept, left = size[:, self.degrees <= order].sum(axis=1), size[:, self.degrees > order].sum(axis=1)
-            # The highest degree stands for all that were never computed.
-            left = left + size[:, self.degrees == highest].sum(axis=1) * (eps if order == highest else 0.0)
-            error = float(np.max(left / np.where(kept > 0.0, kept, 1.0), initial=0.0))
-            if error <= ACCURACY or (order == highest and arithmetic == "taylor"):
-                return self._expansion(order, error)
-        return None
+        orders = range(min(2, highest), highest + 1)
+        errors = np.array([self._truncation(order, eps) for order in orders])
+        accurate = errors <= ACCURACY
+        if not accurate.any(axis=0).all() and arithmetic != "taylor":
+            return None
+        # A row for which no order suffices takes the highest.
+        choice = np.where(accurate.any(axis=0), accurate.argmax(axis=0), len(orders) - 1)
+        truncation = float(errors[choice, np.arange(len(choice))].max(initial=0.0))
+        return self._expansion(choice + orders[0], truncation)
 
-    def _expansion(self, order: int, truncation: float) -> Expansion:
+    def _truncation(self, order: int, eps: float) -> np.ndarray:
+        """Estimate of each row's largest relative error on the ball if degrees above `order` are left out."""
+        highest = int(self.degrees.max(initial=0))
+        size = np.abs(self.table) * float(eps) ** self.degrees
+        kept, left = size[:, self.degrees <= order].sum(axis=1), size[:, self.degrees > order].sum(axis=1)
+        # The highest degree stands for all that were never computed.
+        left = left + size[:, self.degrees == highest].sum(axis=1) * (eps if order == highest else 0.0)
+        return left / np.where(kept > 0.0, kept, 1.0)
+
+    def _expansion(self, orders: np.ndarray, truncation: float) -> Expansion:
+        order = int(orders.max(initial=0))
         chosen = [powers for powers in self.powers if sum(powers) <= order]
         place = {powers: m for m, powers in enumerate(chosen)}
         parents, factors = [], []
@@ -112,12 +118,12 @@ class LocalProblem:
             parent = tuple(power - (j == factor) for j, power in enumerate(powers))
             parents.append(place.get(parent, -1))
             factors.append(factor)
-        return Expansion(
-            order=order, parents=np.array(parents, dtype=np.int64), factors=np.array(factors, dtype=np.int64),
-            coefficients=np.ascontiguousarray(self.table[:, : len(chosen)]), truncation=truncation,
-        )  # fmt: skip
+        kept = np.where(self.degrees <= orders[:, None], self.table, 0.0)[:, : len(chosen)]
+        polynomials = sparse_polynomials(np.array(parents, np.int64), np.array(factors, np.int64), kept)
+        return Expansion(order=order, polynomials=polynomials, truncation=truncation)
 
 
+@lru_cache(maxsize=64)
 def make_local_problem(limit: LimitSet) -> LocalProblem:
     """Round an exact state and its limit set to arrays, and expand the rows of its scene about it."""
     state = limit.state

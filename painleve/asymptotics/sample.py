@@ -22,6 +22,7 @@ from painleve.core.codes import Branch
 from painleve.core.lattice import kronecker_generators, kronecker_shifts
 from painleve.core.reduce import PAIR, POINT, SEGMENT
 from painleve.core.sampling import BLOCK, Sampler
+from painleve.core.taylor import no_polynomials
 from painleve.errors import InputError
 from painleve.sets import Bounds, excess_of_segment_from_profile
 
@@ -90,12 +91,11 @@ class _Stream:
         self.q_uniforms = uniforms_needed(self.in_q, d) if self.in_q else 0
         self.uniform_rows = self.q_uniforms + uniforms_needed(d, d)
         self.expansion: Expansion | None = problem.expansion(eps, options.arithmetic)
-        empty = np.zeros(0, np.int64)
         e = self.expansion
-        polynomial = (e.parents, e.factors, e.coefficients) if e else (empty, empty, np.zeros((len(problem.table), 0)))
+        self.polynomials = e.polynomials if e else no_polynomials()
         self.points = (
             kronecker_generators(shape + d), kronecker_shifts(options.seed, shape + d), float(eps), problem.carried,
-            self.q_uniforms, e is not None, *polynomial,
+            self.q_uniforms, e is not None, self.polynomials,
         )  # fmt: skip
         self.law = (
             problem.q, problem.p, problem.base, problem.u, problem.direction, problem.length, problem.impulse,
@@ -117,7 +117,7 @@ class _Stream:
         x = np.empty((shape + (1 if uniform else d), BLOCK))
         dv = np.empty((d, BLOCK)) if uniform else x[shape:]
         room, uniforms = np.empty(BLOCK), np.empty((self.uniform_rows, BLOCK))
-        monomials = np.empty((self.points[6].size, BLOCK))
+        monomials = np.empty((self.polynomials.parents.size, BLOCK))
         values = np.empty((len(self.problem.table), BLOCK))
         branch, along, beyond, across2 = np.empty(BLOCK, np.int64), *(np.empty(BLOCK) for _ in range(3))
         self.problem.kernels.offset_block(

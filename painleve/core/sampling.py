@@ -16,7 +16,8 @@ from painleve.core.streams import uniform_block
 
 __all__ = ["BLOCK", "Sampler", "sample_block"]
 
-BLOCK = 512  # samples; some twenty arrays of this length stay in the second-level cache
+BLOCK = 768  # samples; some thirty arrays of this length stay in the second-level cache. Not a power of two: their rows
+# would all fall on the same lines of the first-level cache
 
 
 class Sampler(IntEnum):
@@ -29,6 +30,7 @@ class Sampler(IntEnum):
 
 UNIFORM = int(Sampler.UNIFORM)
 BOUNDARY = int(Sampler.BOUNDARY)
+ROOM_MARGIN = 2.0**-48  # more than all roundings on the way to a point of the ball, so that it is in the ball exactly
 BOUNDARY_WEIGHT = 2  # 1 - r becomes (1 - r)^4: half of the samples are within 7% of the sphere
 
 
@@ -48,19 +50,27 @@ def sample_block(
         if in_q > 0:
             uniform_ball(uniforms[:q_uniforms], x[:in_q], eps, dimension)
         uniform_ball(uniforms[q_uniforms:], dv, eps, dimension)
+        share = carried * (1.0 - ROOM_MARGIN) if carried > 0.0 else 0.0
         for i in range(room.size):
-            room[i] = carried * x[q_rows, i] if carried > 0.0 else 0.0
+            room[i] = share * x[in_q - 1, i] if carried > 0.0 else 0.0
         return
     kronecker_block(start, alphas, shifts, x)
     weight = BOUNDARY_WEIGHT if sampler == BOUNDARY else 0
     if q_rows > 0:
         cube_to_ball(x[:q_rows], eps, weight)
     cube_to_ball(dv, eps, weight)
-    room[:] = 0.0
-    if carried > 0.0:
-        for j in range(q_rows):
-            row = x[j]
-            for i in range(room.size):
-                room[i] += (row[i] / eps) * (row[i] / eps)
+    _greatest_room(x, q_rows, eps, carried, room)
+
+
+@jit
+def _greatest_room(x, q_rows, eps, carried, room):
+    """What the ball leaves to the carried coordinates beside the q_rows shape offsets, as a change of g."""
+    inverse, size = 1.0 / eps, carried * eps
+    for i in range(room.size):
+        room[i] = 1.0 - (q_rows + 1) * ROOM_MARGIN
+    for j in range(q_rows):
         for i in range(room.size):
-            room[i] = carried * eps * math.sqrt(max(0.0, 1.0 - room[i]))
+            y = x[j, i] * inverse
+            room[i] -= y * y
+    for i in range(room.size):
+        room[i] = size * math.sqrt(room[i] if room[i] > 0.0 else 0.0)

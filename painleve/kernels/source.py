@@ -37,7 +37,7 @@ from painleve.core.taylor import monomial_block, polynomial_block
 # The same for every scene, but compiled with it: a compiled function that is passed as an argument is compiled anew
 # in every process.
 LANE = '''@jit
-def offset_block(sampler, seed, start, alphas, shifts, eps, carried, q_uniforms, taylor, parents, factors, coefficients,
+def offset_block(sampler, seed, start, alphas, shifts, eps, carried, q_uniforms, taylor, polynomials,
                  q, p, base, u, direction, length, impulse, multiplier, critical_edge,
                  x, dv, room, uniforms, monomials, values, branch, along, beyond, across2):
     """Samples start ... start + BLOCK - 1 through all stages."""
@@ -45,8 +45,8 @@ def offset_block(sampler, seed, start, alphas, shifts, eps, carried, q_uniforms,
     sample_block(sampler, seed, start, alphas, shifts, eps, carried, dimension, q_uniforms, uniforms, q_rows,
                  x, dv, room)
     if taylor:
-        monomial_block(parents, factors, x, monomials)
-        polynomial_block(coefficients, monomials, values)
+        monomial_block(polynomials, x, monomials)
+        polynomial_block(polynomials, monomials, values)
     else:
         varying_block(x, q, p, base, values)
     law_block(values, room, dv, base, u, direction, length, impulse, multiplier, critical_edge,
@@ -54,8 +54,8 @@ def offset_block(sampler, seed, start, alphas, shifts, eps, carried, q_uniforms,
 
 
 @jit
-def sample_lane(first, blocks, samples, sampler, seed, alphas, shifts, eps, carried, q_uniforms, taylor, parents,
-                factors, coefficients, q, p, base, u, direction, length, impulse, multiplier, critical_edge, kind,
+def sample_lane(first, blocks, samples, sampler, seed, alphas, shifts, eps, carried, q_uniforms, taylor, polynomials,
+                q, p, base, u, direction, length, impulse, multiplier, critical_edge, kind,
                 uniform_rows, counts, best, best_index, bins, bin_index):
     """Run `blocks` blocks from block `first` and fold them into this lane's state."""
     dimension, q_rows = {dimension}, {shape}
@@ -63,13 +63,13 @@ def sample_lane(first, blocks, samples, sampler, seed, alphas, shifts, eps, carr
     x = np.empty((rows, BLOCK))
     dv = np.empty((dimension, BLOCK)) if sampler == UNIFORM else x[q_rows:]
     room, uniforms = np.empty(BLOCK), np.empty((uniform_rows, BLOCK))
-    monomials, values = np.empty((parents.size, BLOCK)), np.empty(({varying_count}, BLOCK))
+    monomials, values = np.empty((polynomials.parents.size, BLOCK)), np.empty(({varying_count}, BLOCK))
     branch = np.empty(BLOCK, np.int64)
     along, beyond, across2 = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
     for block in range(first, first + blocks):
         start = block * BLOCK
-        offset_block(sampler, seed, start, alphas, shifts, eps, carried, q_uniforms, taylor, parents, factors,
-                     coefficients, q, p, base, u, direction, length, impulse, multiplier, critical_edge,
+        offset_block(sampler, seed, start, alphas, shifts, eps, carried, q_uniforms, taylor, polynomials,
+                     q, p, base, u, direction, length, impulse, multiplier, critical_edge,
                      x, dv, room, uniforms, monomials, values, branch, along, beyond, across2)
         reduce_block(kind, length, start, min(BLOCK, samples - start), branch, along, beyond, across2,
                      counts, best, best_index, bins, bin_index)
@@ -172,7 +172,7 @@ def _law_block(scene: Scene, rows: Rows) -> str:
     before += names.hoisted()
     inside = [f"dv_{j} = dv[{j}, i]" for j in range(len(axes))] + names.loads()
     inside.append(f"v_n = {_velocity_difference(names, 'w', axes)}")
-    inside.append(f"hit = v_n < 0.0 and {names.difference_or_zero('g')} + room[i] >= 0.0")
+    inside.append(f"hit = (v_n < 0.0) & ({names.difference_or_zero('g')} + room[i] >= 0.0)")
     inside += _planar_lines(names, axes) if scene.friction is not None else _frictionless_lines(names, axes)
     inside.append("dot = " + _sum(f"z_{j}*k_{j}" for j in range(len(axes))))
     inside += [f"z_{j} -= dot*k_{j}" for j in range(len(axes))]
