@@ -8,9 +8,11 @@ kinetic energy is a parabola, whose least point is found from its two values at 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import TypeAlias
 
+import flint
 import mpmath
 import sympy as sp
 
@@ -18,6 +20,7 @@ from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import State
 
 DIGITS = 60
+Exact: TypeAlias = sp.Expr | float | Fraction | flint.arb
 
 
 @dataclass(frozen=True)
@@ -50,8 +53,11 @@ def norm(x: Sequence[mpmath.mpf]) -> mpmath.mpf:
     return mpmath.sqrt(mpmath.fsum(y * y for y in x))
 
 
-def to_mp(value: sp.Expr | float | Fraction) -> mpmath.mpf:
-    """An exact sympy number at the working precision; a float as the float that it is."""
+def to_mp(value: Exact) -> mpmath.mpf:
+    """An exact sympy number at the working precision; a float and the midpoint of a ball as what they are."""
+    if isinstance(value, flint.arb):
+        mantissa, exponent = value.mid().man_exp()
+        return mpmath.ldexp(mpmath.mpf(int(mantissa)), int(exponent))
     if isinstance(value, sp.Basic):
         return mpmath.mpf(sp.N(value, mpmath.mp.dps + 10)._to_mpmath(mpmath.mp.prec))
     if isinstance(value, Fraction):
@@ -80,10 +86,11 @@ class Reference:
         minus, plus, g = tail[-3:]
         return Local(M=M, w_n=w_n, H=H, minus=minus, plus=plus, g=g)
 
-    def at_state(self, state: State, dq: Sequence[float]) -> Local:
-        """At q + dq, with dq exact."""
-        q = [to_mp(x) + to_mp(y) for x, y in zip(state.q, dq, strict=True)]
-        return self.at(q, self.parameters(state.parameters))
+    def at_state(self, state: State, dq: Sequence[Exact]) -> Local:
+        """At q + dq, with dq exact; at q itself g is exactly zero, which digits cannot show."""
+        offset = [to_mp(x) for x in dq]
+        local = self.at([to_mp(x) + y for x, y in zip(state.q, offset, strict=True)], self.parameters(state.parameters))
+        return local if any(offset) else replace(local, g=mpmath.mpf(0))
 
     def parameters(self, values: Mapping[str, sp.Expr]) -> list[mpmath.mpf]:
         return [to_mp(values[p.name]) for p in self.scene.parameters]
@@ -106,6 +113,9 @@ def law(local: Local, v: Sequence[mpmath.mpf]) -> mpmath.matrix:
 def least_impulse(local: Local, v: mpmath.matrix, v_n: mpmath.mpf) -> mpmath.matrix:
     """The impulse in the cone that cancels v_n with the least kinetic energy afterwards."""
     lifts = local.lifts()
+    # A critical state has a compliance that is exactly zero, which digits cannot show: take it for one.
+    nothing = max(map(abs, lifts)) * mpmath.mpf(10) ** (15 - mpmath.mp.dps)
+    lifts = [mpmath.mpf(0) if abs(lift) < nothing else lift for lift in lifts]
     ends = [edge * (-v_n / lift) for edge, lift in zip(local.edges(), lifts, strict=True) if lift > 0]
     if not ends:
         raise ArithmeticError("no impulse of the cone lifts the tip")

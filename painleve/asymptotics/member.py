@@ -24,11 +24,14 @@ Balls = list[flint.arb]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Member:
-    """S(q + dq, u- + dv): preimage (rounded, if it was given finer than doubles), branch, value, distance to A.
+    """S(q + dq, u- + dv): preimage, branch, value, distance to A.
 
-    offset: S - u-, rounded from an enclosure; distance: an enclosure (lower, upper) of dist(S, A), rounded outwards.
+    preimage: (dq, dv) as the exact dyadic numbers that they are; dq, dv: the same as doubles, which a witness at small
+    eps may not survive (lambda = -v_n/gamma is a quotient of numbers far below the rounding of dv). offset: S - u-,
+    rounded from an enclosure; distance: an enclosure (lower, upper) of dist(S, A), rounded outwards.
     """
 
+    preimage: tuple[tuple[flint.arb, ...], tuple[flint.arb, ...]]
     dq: np.ndarray
     dv: np.ndarray
     branch: Branch
@@ -49,8 +52,8 @@ def make_member(
         exact_q, exact_v = _exact(dq), _exact(dv)
         offset, branch = _law(problem, exact_q, exact_v)
         return Member(
-            dq=_rounded(exact_q), dv=_rounded(exact_v), branch=branch, offset=_rounded(offset),
-            distance=_outward(_distance_to_limit(problem, offset)), enclosure=tuple(offset),
+            preimage=(tuple(exact_q), tuple(exact_v)), dq=_rounded(exact_q), dv=_rounded(exact_v), branch=branch,
+            offset=_rounded(offset), distance=_outward(_distance_to_limit(problem, offset)), enclosure=tuple(offset),
         )  # fmt: skip
 
 
