@@ -52,10 +52,15 @@ class Stepped(Scheme):
     code: FixedStep
     lag: Callable[[float], float] = lambda theta: 0.0
 
-    def run(self, start: Start, grid: Grid, tolerance: float, options: Mapping[str, float]) -> Trajectory:
+    def theta(self, options: Mapping[str, float]) -> float:
+        """The option theta, 0 where the scheme has none. Raises InputError."""
         theta = options.get("theta", 0.0)
         if not 0.0 <= theta <= 1.0:
             raise InputError(f"scheme {self.name}: theta = {theta} must be between 0 and 1")
+        return theta
+
+    def run(self, start: Start, grid: Grid, tolerance: float, options: Mapping[str, float]) -> Trajectory:
+        theta = self.theta(options)
         return run_fixed_step(self.name, int(self.code), theta, self.lag(theta), start, grid, tolerance)
 
 

@@ -9,7 +9,15 @@ from painleve.errors import InputError
 
 __all__ = ["SCHEME_NAMES", "load_scheme"]
 
-SCHEME_NAMES = ("contact_dynamics", "moreau_jean", "stewart_trinkle", "anitescu_potra", "schatzman_paoli")
+SCHEME_NAMES = (
+    "contact_dynamics",
+    "moreau_jean",
+    "stewart_trinkle",
+    "anitescu_potra",
+    "schatzman_paoli",
+    "event_driven",
+    "compliant",
+)
 
 
 def load_scheme(name: str) -> Scheme:

@@ -1,0 +1,114 @@
+"""Coulomb's law at the level of accelerations: every mode in which a closed, tangential contact can go on.
+
+The complementarity problem of P. Lötstedt, ZAMM 61 (1981) 605-615, with one planar contact; all solutions are listed.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from painleve.core.codes import Branch
+from painleve.core.law import stick_impulse
+from painleve.dynamics.start import Start
+
+__all__ = ["ContactPoint", "Mode", "closed_modes"]
+
+Mode = Branch  # FREE: the contact opens; STICK, SLIP_PLUS, SLIP_MINUS, FRICTIONLESS: it stays closed
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactPoint:
+    """The contact at one instant: rows of the scene, M^-1 f, velocities v and free accelerations beta of the tip."""
+
+    rows: tuple[float, ...]
+    acceleration: tuple[float, ...]
+    d: int
+    planar: bool
+    v_n: float
+    v_t: float
+    beta_n: float
+    beta_t: float
+
+    @staticmethod
+    def at(start: Start, t: float, q: np.ndarray, u: np.ndarray) -> ContactPoint:
+        motion, d = start.motion, len(q)
+        state = tuple(map(float, q)), tuple(map(float, u))
+        rows, acceleration = motion.motion_at(float(t), *state, start.p)
+        drift_n, drift_t = motion.drift_at(*state, start.p)
+        normal = rows[1 : 1 + d]
+        tangent = rows[3 + 2 * d : 3 + 3 * d] if motion.planar else (0.0,) * d
+        return ContactPoint(
+            rows=rows, acceleration=acceleration, d=d, planar=motion.planar,
+            v_n=_dot(normal, state[1]), v_t=_dot(tangent, state[1]),
+            beta_n=_dot(normal, acceleration) + drift_n, beta_t=_dot(tangent, acceleration) + drift_t,
+        )  # fmt: skip
+
+    @property
+    def a(self) -> float:
+        return self.rows[1 + 2 * self.d]
+
+    @property
+    def b(self) -> float:
+        return self.rows[3 + 4 * self.d]
+
+    @property
+    def C(self) -> float:
+        return self.rows[4 + 4 * self.d]
+
+    def ratio(self, mode: Mode) -> float:
+        """s = lambda_t/lambda_n of a slipping mode."""
+        return self.rows[6 + 4 * self.d] if mode is Mode.SLIP_PLUS else -self.rows[7 + 4 * self.d]
+
+    def edge(self, mode: Mode) -> float:
+        """a + b s of a slipping mode."""
+        return self.rows[2 + 2 * self.d] if mode is Mode.SLIP_PLUS else self.rows[5 + 4 * self.d]
+
+    def force(self, mode: Mode) -> tuple[float, float]:
+        """(lambda_n, lambda_t) that keeps the contact in that mode."""
+        if mode is Mode.FREE:
+            return 0.0, 0.0
+        if mode is Mode.FRICTIONLESS:
+            return -self.beta_n / self.a, 0.0
+        if mode is Mode.STICK:
+            return stick_impulse(self.a, self.b, self.C, self.beta_n, self.beta_t)
+        edge = self.edge(mode)
+        normal = -self.beta_n / edge if edge != 0.0 else math.copysign(math.inf, -self.beta_n)
+        return normal, self.ratio(mode) * normal
+
+    def stopping_impulse(self) -> tuple[float, float]:
+        """The impulse that stops the tip."""
+        return stick_impulse(self.a, self.b, self.C, self.v_n, self.v_t)
+
+    def response(self, normal: float, tangential: float) -> np.ndarray:
+        """M^-1 W of an impulse or a force, (d,)."""
+        d = self.d
+        change = normal * np.array(self.rows[1 + d : 1 + 2 * d])
+        if self.planar:
+            change += tangential * np.array(self.rows[3 + 3 * d : 3 + 4 * d])
+        return change
+
+
+def closed_modes(point: ContactPoint, slip: int) -> list[Mode]:
+    """All modes whose accelerations solve the contact problem; `slip` is the sign of v_t (0: at rest), v_n = 0."""
+    found = [Mode.FREE] if point.beta_n >= 0.0 else []
+    if not point.planar:
+        return found or [Mode.FRICTIONLESS]
+    if slip != 0:
+        mode = Mode.SLIP_MINUS if slip > 0 else Mode.SLIP_PLUS
+        return found + ([mode] if 0.0 < point.force(mode)[0] < math.inf else [])
+    normal, tangential = point.force(Mode.STICK)
+    if normal > 0.0 and point.ratio(Mode.SLIP_MINUS) * normal <= tangential <= point.ratio(Mode.SLIP_PLUS) * normal:
+        found.append(Mode.STICK)
+    for mode in (Mode.SLIP_PLUS, Mode.SLIP_MINUS):
+        normal = point.force(mode)[0]
+        s = point.ratio(mode)
+        if 0.0 < normal < math.inf and (point.beta_t + (point.b + point.C * s) * normal) * s < 0.0:
+            found.append(mode)
+    return found
+
+
+def _dot(x: tuple[float, ...], y: tuple[float, ...]) -> float:
+    return float(sum(a * b for a, b in zip(x, y, strict=True)))

@@ -1,0 +1,190 @@
+"""Event-driven integration: smooth motion in one contact mode at a time, changes of mode located as events.
+
+In contact the acceleration-level problem is solved (painleve.dynamics.modes); impacts follow the law S. Where no
+acceleration solves it, or more than one does, the method ends and says so: it has no rule to go on.
+Order 8 between events (Dormand and Prince, DOP853 of scipy).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from painleve.core.codes import Branch
+from painleve.core.motion_codes import Change, Ending
+from painleve.core.steps import contact_problem
+from painleve.dynamics.grid import Grid
+from painleve.dynamics.modes import ContactPoint, Mode, closed_modes
+from painleve.dynamics.recorder import Recorder
+from painleve.dynamics.scheme import Integrated
+from painleve.dynamics.start import Start
+from painleve.dynamics.trajectory import Trajectory
+
+NAME = "event_driven"
+MOST_EVENTS = 10_000
+ROUNDING = 1e-11  # relative to 1 + |u|: velocities of the tip below this are zero when a mode is chosen
+Event = Callable[[float, np.ndarray], float]
+
+
+class _Stop(Exception):
+    """The method cannot go on."""
+
+    def __init__(self, ending: Ending, detail: str = "") -> None:
+        super().__init__(detail)
+        self.ending, self.detail = ending, detail
+
+
+class _Run:
+    """One integration: the state moves from arc to arc."""
+
+    def __init__(self, start: Start, grid: Grid, options: Mapping[str, float]) -> None:
+        self.start, self.grid, self.options = start, grid, options
+        self.d, self.t, self.recorder, self.events = len(start.q), start.t, Recorder(start), 0
+        self.y = self.recorder.last
+
+    def point(self, t: float, y: np.ndarray) -> ContactPoint:
+        return ContactPoint.at(self.start, t, y[: self.d], y[self.d : 2 * self.d])
+
+    def go(self) -> Trajectory:
+        ending, detail = Ending.REACHED_END, ""
+        try:
+            touching = self.start.rows[0] >= -self.start.rounding
+            mode = self.after_contact() if touching else Mode.FREE
+            while self.t < self.grid.t[-1]:
+                if self.events > MOST_EVENTS:
+                    raise _Stop(Ending.TOO_MANY_EVENTS, f"{MOST_EVENTS}")
+                mode = self.arc(mode)
+                self.events += 1
+        except _Stop as stop:
+            ending, detail = stop.ending, stop.detail
+        except KeyboardInterrupt:
+            ending = Ending.INTERRUPTED
+        return self.recorder.trajectory(NAME, dict(self.options), ending, detail, {"events": self.events})
+
+    def arc(self, mode: Mode) -> Mode:
+        """Integrate to the next event or the end; returns the next mode."""
+        events = self.mode_events(mode)
+        with np.errstate(all="ignore"):
+            solution = solve_ivp(
+                lambda t, y: self.rate(t, y, mode), (self.t, self.grid.t[-1]), self.y, method="DOP853",
+                events=list(events), dense_output=True, rtol=self.options["rtol"], atol=self.options["atol"],
+            )  # fmt: skip
+        self.record(solution, mode)
+        if solution.status < 0:
+            raise _Stop(Ending.STEP_SIZE_UNDERFLOW, f"at t = {self.t:.9g}, {mode.label}")
+        if solution.status == 0:
+            return mode
+        happened = next(e for e, times in zip(events, solution.t_events, strict=True) if len(times))
+        return events[happened]()
+
+    def rate(self, t: float, y: np.ndarray, mode: Mode) -> np.ndarray:
+        point = self.point(t, y)
+        force = point.force(mode)
+        return np.concatenate([y[self.d : 2 * self.d], point.acceleration + point.response(*force), force])
+
+    def record(self, solution: object, mode: Mode) -> None:
+        """The grid's instants within the arc and its end; the state moves there."""
+        end, y_end = solution.t[-1], solution.y[:, -1]  # type: ignore[attr-defined]
+        inside = self.grid.t[(self.grid.t > self.t) & (self.grid.t < end)]
+        if len(inside):
+            self.recorder.add(inside, solution.sol(inside).T, np.full(len(inside), mode))  # type: ignore[attr-defined]
+        self.recorder.add(np.array([end]), y_end[None, :], np.array([mode]))
+        self.t, self.y = float(end), y_end
+
+    def mode_events(self, mode: Mode) -> dict[Event, Callable[[], Mode]]:
+        """Functions that fall through zero when a mode ends, and what follows."""
+        if mode is Mode.FREE:
+            return {_falling(lambda t, y: -self.point(t, y).rows[0]): self.after_contact}
+        force = {_falling(lambda t, y: self.point(t, y).force(mode)[0]): lambda: Mode.FREE}
+        if mode is Mode.FRICTIONLESS:
+            return force
+        if mode is Mode.STICK:
+            return force | {
+                _falling(lambda t, y, s=side: self.reserve(t, y, s)): (lambda s=side: self.begin_slip(s))
+                for side in (Mode.SLIP_PLUS, Mode.SLIP_MINUS)
+            }
+        sign = 1.0 if mode is Mode.SLIP_MINUS else -1.0
+        return {
+            _falling(lambda t, y: sign * self.point(t, y).v_t): self.after_contact,
+            _falling(lambda t, y: -self.point(t, y).beta_n): lambda: Mode.FREE,
+            _falling(lambda t, y: self.point(t, y).edge(mode)): self.lose_edge,
+        }
+
+    def reserve(self, t: float, y: np.ndarray, side: Mode) -> float:
+        """How far the sticking force is from an edge of the cone."""
+        point = self.point(t, y)
+        normal, tangential = point.force(Mode.STICK)
+        bound = point.ratio(side) * normal
+        return bound - tangential if side is Mode.SLIP_PLUS else tangential - bound
+
+    def begin_slip(self, side: Mode) -> Mode:
+        if self.point(self.t, self.y).edge(side) <= 0.0:
+            raise _Stop(Ending.INDETERMINATE, f"sticking ends where {side.label} and lift-off both solve it")
+        return side
+
+    def lose_edge(self) -> Mode:
+        raise _Stop(Ending.INCONSISTENT, f"the contact force of the slip grows without bound at t = {self.t:.9g}")
+
+    def after_contact(self) -> Mode:
+        """The mode after an impact, at the end of a slip, or at the start; impacts and rounding are projected out."""
+        point = self.point(self.t, self.y)
+        small = ROUNDING * (1.0 + float(np.abs(self.y[self.d : 2 * self.d]).sum()))
+        if point.v_n > small:
+            return Mode.FREE
+        slip = 0 if abs(point.v_t) <= small or not point.planar else int(math.copysign(1, point.v_t))
+        if point.v_n < -small:
+            slip = self.impact(point)
+        elif slip == 0 and point.planar:
+            self.hold(point)
+        return self.choose(slip)
+
+    def hold(self, point: ContactPoint) -> None:
+        """A tip that comes to rest is at rest: its rounded velocity is taken away."""
+        self.y = self.y.copy()
+        self.y[self.d : 2 * self.d] += point.response(*point.stopping_impulse())
+
+    def impact(self, point: ContactPoint) -> int:
+        """u+ = S(q, u-); returns the sign of the slip that is left."""
+        normal, tangential, code = contact_problem(point.rows, point.d, point.planar, point.v_n, point.v_t, 0.0)
+        self.y = self.y.copy()
+        self.y[self.d : 2 * self.d] += point.response(normal, tangential)
+        self.y[2 * self.d :] += normal, tangential
+        change = Change.FRICTIONAL_IMPACT if point.planar else Change.IMPACT
+        self.recorder.add(np.array([self.t]), self.y[None, :], np.array([code]), change)
+        return {Branch.SLIP_PLUS: -1, Branch.SLIP_MINUS: 1}.get(Branch(code), 0)
+
+    def choose(self, slip: int) -> Mode:
+        """The one mode that solves the contact problem. Raises _Stop where there is none, or more than one."""
+        modes = closed_modes(self.point(self.t, self.y), slip)
+        if not modes:
+            raise _Stop(Ending.INCONSISTENT, f"at t = {self.t:.9g}")
+        if len(modes) > 1:
+            count = {2: "two", 3: "three", 4: "four"}[len(modes)]
+            names = ", ".join("lift-off" if m is Mode.FREE else m.label for m in modes)
+            raise _Stop(Ending.INDETERMINATE, f"{count}: {names}; at t = {self.t:.9g}")
+        return modes[0]
+
+
+def _falling(function: Event) -> Event:
+    """An event that ends the arc where the function falls through zero."""
+    function.terminal, function.direction = True, -1  # type: ignore[attr-defined]
+    return function
+
+
+def integrate(start: Start, grid: Grid, options: Mapping[str, float]) -> Trajectory:
+    """The trajectory on the grid's instants and at every event."""
+    return _Run(start, grid, options).go()
+
+
+SCHEME = Integrated(
+    name=NAME,
+    sentence="smooth motion between located events, complementarity of accelerations and contact forces",
+    source="P. Lötstedt, ZAMM 61 (1981) 605-615; F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral "
+           "Contacts, 1996",
+    order=8,
+    options={"rtol": 1e-10, "atol": 1e-12},
+    integrate=integrate,
+)  # fmt: skip
