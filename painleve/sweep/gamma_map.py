@@ -54,7 +54,7 @@ def map_gamma(
 
     The path varies the first coordinate on which the law depends; where it depends on a second one, that one follows
     the constraint g = 0. Plain floating-point values: a map shows, and the branch of each state is the exact one.
-    States whose curve mu_c is the same share a panel.
+    States with the same curve mu_c share a panel, unless they coincide in it.
 
     Raises InputError for unknown names, and for a scene without symmetric friction or with more than one path.
     """
@@ -64,43 +64,48 @@ def map_gamma(
         raise InputError(f"scene {scene.name}: no map: it needs symmetric friction and one path along the contact")
     grid = make_grid(scene, states=states, keys=keys, parameters=parameters)
     classified = [classify(grid.state(index)) for index in grid.points()]
-    exact = [c.limit.state for c in classified]
-    places = np.array([state.number(state.q[shape[0]]) for state in exact])
+    coordinate = scene.coordinates[shape[0]]
+    path, friction, variables = _evaluate(kernels, [c.limit.state for c in classified], points)
+    variables["theorem_branch"] = coded(
+        ["state"], np.array([code(c.branch.value, BRANCHES) for c in classified]), BRANCHES,
+        "branch of Theorem 1, by exact arithmetic",
+    )  # fmt: skip
+    attributes = {
+        "title": f"gamma and the critical friction of {scene.name}: {scene.sentence}",
+        "kind": "gamma_map",
+        "path_symbol": f"${coordinate.latex or coordinate.name}$",
+        **provenance(scene=scene.name, scene_digest=kernels.digest, seed=0, command=command),
+    }
+    return xr.Dataset(variables, grid.coordinates() | {"path": path, "friction": friction}, attributes)
+
+
+def _evaluate(
+    kernels: Kernels, states: list[State], points: tuple[int, int]
+) -> tuple[xr.Variable, xr.Variable, dict[str, xr.Variable]]:
+    """The two axes, and what is drawn over them."""
+    index = kernels.derivation.shape[0]
+    coordinate = kernels.scene.coordinates[index]
+    places = np.array([state.number(state.q[index]) for state in states])
     values = np.linspace(places.min() - REACH, places.max() + REACH, points[0])
-    paths = [_follow(kernels, state, values) for state in exact]
-    at_state = [_follow(kernels, state, places[i : i + 1]) for i, state in enumerate(exact)]
-    coefficients = np.array([p.friction[0] for p in at_state])
-    friction = np.linspace(0.0, HEADROOM * coefficients.max(), points[1])
-    gamma = np.array([_gamma(path, friction) for path in paths])
-    coordinate, branches = scene.coordinates[shape[0]], [code(c.branch.value, BRANCHES) for c in classified]
+    paths = [_follow(kernels, state, values) for state in states]
+    own = np.array([_follow(kernels, s, places[i : i + 1]).friction[0] for i, s in enumerate(states)])
+    friction = np.linspace(0.0, HEADROOM * own.max(), points[1])
 
     def number(dims: tuple[str, ...], data: np.ndarray, sentence: str, units: str = "1") -> xr.Variable:
         return xr.Variable(dims, data, {"units": units, "long_name": sentence})
 
-    along = ("state", "path")
+    along, critical, panel = ("state", "path"), np.array([p.critical for p in paths]), _panels(paths, places, own)
+    gamma = np.array([_gamma(path, friction) for path in paths])
     variables = {
-        "gamma": number(
-            ("state", "path", "friction"), gamma, "gamma, the least normal compliance, in plain floats", "SI"
-        ),
-        "critical_friction": number(
-            along, np.array([p.critical for p in paths]), "critical coefficient of friction mu_c = a/|b|"
-        ),
-        "own_friction": number(
-            along, np.array([p.friction for p in paths]), "coefficient of friction of the scene on the path"
-        ),
+        "gamma": number((*along, "friction"), gamma, "gamma, the least normal compliance, in plain floats", "SI"),
+        "critical_friction": number(along, critical, "critical coefficient of friction mu_c = a/|b|"),
+        "own_friction": number(along, np.array([p.friction for p in paths]), "coefficient of friction of the scene"),
         "state_path": number(("state",), places, f"where the state lies: {coordinate.sentence}", coordinate.unit),
-        "state_friction": number(("state",), coefficients, "coefficient of friction of the scene at the state"),
-        "panel": number(("state",), _panels(paths), "number of the picture; states with the same mu_c share one"),
-        "theorem_branch": coded(["state"], np.array(branches), BRANCHES, "branch of Theorem 1, by exact arithmetic"),
+        "state_friction": number(("state",), own, "coefficient of friction of the scene at the state"),
+        "panel": number(("state",), panel, "number of the picture; states with one mu_c share it"),
     }
-    coordinates = grid.coordinates() | {
-        "path": number(("path",), values, coordinate.sentence, coordinate.unit),
-        "friction": number(("friction",), friction, "coefficient of friction as an independent variable"),
-    }
-    title = f"gamma and the critical friction of {scene.name}: {scene.sentence}"
-    source = provenance(scene=scene.name, scene_digest=kernels.digest, seed=0, command=command)
-    attributes = {"title": title, "kind": "gamma_map", "path": coordinate.name, **source}
-    return xr.Dataset(variables, coordinates, attributes)
+    axis = number(("path",), values, f"coordinate along the contact: {coordinate.sentence}", coordinate.unit)
+    return axis, number(("friction",), friction, "coefficient of friction as an independent variable"), variables
 
 
 def _gamma(path: _Path, friction: np.ndarray) -> np.ndarray:
@@ -108,15 +113,20 @@ def _gamma(path: _Path, friction: np.ndarray) -> np.ndarray:
     return (path.a[:, None] - path.b[:, None] * friction) / path.squared[:, None]
 
 
-def _panels(paths: list[_Path]) -> np.ndarray:
-    """The first state with the same critical friction, numbered without gaps."""
-    seen: list[np.ndarray] = []
+def _panels(paths: list[_Path], places: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
+    """Numbers without gaps: states share a panel if they have the same critical friction and do not coincide."""
+    seen: list[tuple[np.ndarray, set[tuple[float, float]]]] = []
     numbers = []
-    for path in paths:
-        same = [i for i, curve in enumerate(seen) if np.array_equal(curve, path.critical, equal_nan=True)]
-        if not same:
-            seen.append(path.critical)
-        numbers.append(same[0] if same else len(seen) - 1)
+    for path, place in zip(paths, zip(places, coefficients, strict=True), strict=True):
+        fitting = [
+            i
+            for i, (curve, taken) in enumerate(seen)
+            if place not in taken and np.array_equal(curve, path.critical, equal_nan=True)
+        ]
+        if not fitting:
+            seen.append((path.critical, set()))
+        numbers.append(fitting[0] if fitting else len(seen) - 1)
+        seen[numbers[-1]][1].add(place)
     return np.array(numbers, dtype=np.int64)
 
 

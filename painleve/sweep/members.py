@@ -45,7 +45,7 @@ def sweep_members(
     Raises InputError for bad eps, names and values, more than 100000 samples, and a limit set that is undecided.
     """
     radii = [check_eps(value) for value in eps]
-    options = options or SampleOptions(samples=4096)
+    options = options or SampleOptions(samples=4096, sampler="uniform")
     if not radii:
         raise InputError("eps: no values; give at least one")
     if options.samples > MOST_MEMBERS:

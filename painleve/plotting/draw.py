@@ -1,0 +1,60 @@
+"""One door to the figures: the kind of the dataset chooses, and the name of the file chooses the format."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+
+import matplotlib as mpl
+import xarray as xr
+from matplotlib.figure import Figure
+
+from painleve.errors import InputError
+from painleve.plotting.distances import draw_distances
+from painleve.plotting.gamma_map import draw_gamma_map
+from painleve.plotting.members import draw_members
+from painleve.plotting.regimes import draw_regimes
+from painleve.plotting.style import STYLE
+from painleve.store import check_writable
+
+__all__ = ["draw", "save_figure"]
+
+DRAWINGS: Mapping[str, Callable[[xr.Dataset], Figure]] = MappingProxyType({
+    "distances": draw_distances,
+    "members": draw_members,
+    "gamma_map": draw_gamma_map,
+    "regimes": draw_regimes,
+})  # fmt: skip
+# Without dates, the same dataset gives the same bytes.
+WITHOUT_DATE = {"pdf": {"CreationDate": None}, "svg": {"Date": None}, "png": {}}
+
+
+def draw(dataset: xr.Dataset) -> Figure:
+    """The figure of a dataset of this package. Raises InputError for a kind that has none."""
+    kind = str(dataset.attrs.get("kind", "unknown"))
+    if kind not in DRAWINGS:
+        raise InputError(f"no figure for a dataset of kind {kind!r}; there are figures of {', '.join(DRAWINGS)}")
+    with mpl.rc_context(STYLE):
+        return DRAWINGS[kind](dataset)
+
+
+def save_figure(figure: Figure, path: str | Path) -> Path:
+    """Write a figure as PDF, PNG or SVG, by the suffix, whole or not at all. Raises InputError where it cannot."""
+    target = check_writable(path)
+    form = target.suffix.removeprefix(".").lower()
+    if form not in WITHOUT_DATE:
+        raise InputError(f"output {target}: cannot draw {form or 'a file without a suffix'}; use .pdf, .png or .svg")
+    aside = target.with_name(f".{target.name}.{os.getpid()}.part")
+    try:
+        with mpl.rc_context({**STYLE, "svg.hashsalt": "painleve"}):
+            figure.savefig(aside, format=form, metadata=WITHOUT_DATE[form])
+        os.replace(aside, target)
+    except OSError as error:
+        raise InputError(
+            f"output {target}: cannot be written ({error.strerror or error}); give another place"
+        ) from error
+    finally:
+        aside.unlink(missing_ok=True)
+    return target

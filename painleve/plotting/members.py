@@ -1,0 +1,70 @@
+"""A and sampled members of A_eps in the space of velocities."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from painleve.plotting.style import GREY, LAW_MARKS, PALETTE, labels_of, legend_below, panels, spoken
+
+__all__ = ["draw_members"]
+
+RARE = 0.02  # share of the sample below which marks are drawn larger
+ONE_POINT = 1e-9  # extent, in units of velocity, below which a cloud would be drawn as one small mark
+
+
+def draw_members(dataset: xr.Dataset) -> Figure:
+    """A row for each state, a column for each eps; offsets from u-, projected on the plane that the axes name."""
+    count = dataset.sizes["eps"]
+    figure, axes = panels(dataset.sizes["state"] * count, columns=count, height=1.75)
+    for k, axis in enumerate(axes):
+        one = dataset.isel(state=k // count, eps=k % count)
+        axis.set_title(f"{spoken(one['state'].item())}, $\\varepsilon$ = {one['eps'].item():g}")
+        _draw_panel(axis, one)
+        axis.locator_params(nbins=6)
+        axis.margins(0.08)
+        axis.set_xlabel(f"along {_vector(one['axis_along'])}")
+        axis.set_ylabel(f"across\n{_vector(one['axis_across'])}")
+    unit, names = dataset["along"].attrs["units"], ", ".join(str(name) for name in dataset["coordinate"].values)
+    figure.suptitle(f"components of $v - u^-$ ({unit}) along unit vectors in ({names})", fontsize=8)
+    legend_below(figure, axes, columns=4)
+    return figure
+
+
+def _draw_panel(axis: Axes, one: xr.Dataset) -> None:
+    length, kind = one["jump_length"].item(), labels_of(one["limit_set"]).item()
+    if kind == "segment":
+        axis.plot([0.0, length], [0.0, 0.0], color=GREY, linewidth=5.0, alpha=0.35, solid_capstyle="butt",
+                  label="$A = [u^-, \\tilde u]$", zorder=1)  # fmt: skip
+    branches = labels_of(one["law_branch"])
+    for name, mark in LAW_MARKS.items():
+        chosen = branches == name
+        if chosen.any():
+            x, y = one["along"].values[chosen], one["across"].values[chosen]
+            axis.scatter(x, y, s=_size(x, y, branches.size), c=mark.colour, marker=mark.marker, linewidths=0.0,
+                         zorder=2, rasterized=True)  # fmt: skip
+            axis.plot([], [], linestyle="none", marker=mark.marker, color=mark.colour, label=mark.label)
+    if np.isfinite(one["witness_along"]).all() and kind == "segment":
+        axis.plot(one["witness_along"], one["witness_across"], color=PALETTE["black"], linestyle=(0, (2, 2)),
+                  linewidth=0.9, label="witnesses over one $q_\\varepsilon$", zorder=3)  # fmt: skip
+    _draw_end(axis, 0.0, "+", "$u^-$")
+    if kind != "point":
+        _draw_end(axis, length, "x", "$\\tilde u$")
+
+
+def _size(x: np.ndarray, y: np.ndarray, of: int) -> float:
+    """A handful of slips among thousands of others, or thousands of members in one point, must not be overlooked."""
+    if x.size <= RARE * of:
+        return 12.0
+    return 60.0 if max(np.ptp(x), np.ptp(y)) < ONE_POINT else 3.0
+
+
+def _draw_end(axis: Axes, x: float, marker: str, label: str) -> None:
+    axis.plot(x, 0.0, marker=marker, color=PALETTE["black"], markersize=7, markeredgewidth=1.4, linestyle="none",
+              label=label, zorder=4)  # fmt: skip
+
+
+def _vector(axis: xr.DataArray) -> str:
+    return "(" + ", ".join(f"{0.0 if abs(x) < 5e-3 else x:.2f}" for x in axis.values) + ")"

@@ -1,0 +1,126 @@
+"""One look for all figures: a palette that colour-blind readers and grey printers can tell apart, and labels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from painleve.errors import InputError
+
+__all__ = [
+    "GREY",
+    "LAW_MARKS",
+    "PALETTE",
+    "STYLE",
+    "THEOREM_MARKS",
+    "Mark",
+    "label_outside",
+    "labels_of",
+    "legend_below",
+    "panels",
+    "spoken",
+    "with_unit",
+]
+
+# M. Okabe and K. Ito, "Color Universal Design" (2008).
+PALETTE = MappingProxyType({
+    "black": "#000000", "orange": "#E69F00", "sky": "#56B4E9", "green": "#009E73", "yellow": "#F0E442",
+    "blue": "#0072B2", "vermilion": "#D55E00", "purple": "#CC79A7",
+})  # fmt: skip
+GREY = "#777777"
+# Any: matplotlib's own type of such a table is a list of all its keys.
+STYLE: Any = MappingProxyType({
+    "font.size": 8.0, "axes.titlesize": 8.0, "axes.labelsize": 8.0, "legend.fontsize": 7.5, "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0, "axes.linewidth": 0.6, "lines.linewidth": 1.0, "lines.markersize": 4.0,
+    "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False, "figure.dpi": 110,
+    "savefig.dpi": 300, "pdf.fonttype": 42, "mathtext.fontset": "dejavusans", "hatch.linewidth": 0.4,
+})  # fmt: skip
+MOST_PANELS = 24
+WIDTH = 7.0  # inches: two columns of a journal
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mark:
+    """Colour and marker together, so that either suffices; and what the legend says."""
+
+    colour: str
+    marker: str
+    label: str
+
+
+LAW_MARKS = MappingProxyType({
+    "free": Mark(colour=PALETTE["sky"], marker="o", label="free: S = v"),
+    "stick": Mark(colour=PALETTE["orange"], marker="s", label="stick"),
+    "slip_plus": Mark(colour=PALETTE["green"], marker="^", label="slip, friction +μ"),
+    "slip_minus": Mark(colour=PALETTE["purple"], marker="v", label="slip, friction −μ"),
+    "frictionless": Mark(colour=PALETTE["blue"], marker="D", label="impact without friction"),
+})  # fmt: skip
+THEOREM_MARKS = MappingProxyType({
+    "none": Mark(colour=PALETTE["sky"], marker="o", label="nothing indeterminate"),
+    "negative": Mark(colour=PALETTE["vermilion"], marker="s", label="γ < 0"),
+    "critical_approached": Mark(colour=PALETTE["green"], marker="^", label="γ = 0, approached"),
+    "critical_isolated": Mark(colour=PALETTE["yellow"], marker="D", label="γ = 0, isolated"),
+    "undecided": Mark(colour=GREY, marker="X", label="undecided"),
+})  # fmt: skip
+
+
+def labels_of(code: xr.DataArray) -> np.ndarray:
+    """The meanings of a variable of codes, in its shape."""
+    values = np.atleast_1d(code.attrs["flag_values"]).tolist()
+    meanings = dict(zip(values, code.attrs["flag_meanings"].split(), strict=True))
+    return np.vectorize(meanings.__getitem__, otypes=[object])(code.values)
+
+
+def spoken(label: object) -> str:
+    """A label as words."""
+    return str(label).replace("_", " ")
+
+
+def with_unit(text: str, variable: xr.DataArray) -> str:
+    """An axis label with the variable's unit."""
+    unit = variable.attrs["units"]
+    return text if unit == "1" else f"{text} ({unit})"
+
+
+def panels(count: int, *, columns: int, height: float, shared: bool = False) -> tuple[Figure, list[Axes]]:
+    """A figure with `count` panels, `columns` side by side, `height` inches each; the rest of the grid stays empty.
+
+    `shared`: all have the same two axes, and only the outer ones are labelled.
+    """
+    if count > MOST_PANELS:
+        raise InputError(f"figure: {count} panels are too many to read; select at most {MOST_PANELS} of the dataset")
+    columns = min(columns, count)
+    rows = -(-count // columns)
+    figure = Figure(figsize=(WIDTH, height * rows + 0.7), layout="constrained")
+    grid = figure.subplots(rows, columns, squeeze=False, sharex=shared, sharey=shared)
+    axes: list[Axes] = list(grid.flat)
+    for spare in axes[count:]:
+        spare.remove()
+    return figure, axes[:count]
+
+
+def label_outside(axes: list[Axes], columns: int, x: str, y: str) -> None:
+    """Labels on the left and under the lowest panel of each column, for panels that share their axes."""
+    for k, axis in enumerate(axes):
+        if k % columns == 0:
+            axis.set_ylabel(y)
+        if k + columns >= len(axes):
+            axis.set_xlabel(x)
+            axis.tick_params(labelbottom=True)
+
+
+def legend_below(figure: Figure, axes: Iterable[Axes], columns: int) -> None:
+    """One legend for all panels, outside of them, so that it covers no data; every label once."""
+    entries: dict[str, Artist] = {}
+    for axis in axes:
+        for handle, label in zip(*axis.get_legend_handles_labels(), strict=True):
+            entries.setdefault(label, handle)
+    figure.legend(list(entries.values()), list(entries), loc="outside lower center", ncols=columns)
