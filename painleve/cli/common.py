@@ -19,6 +19,7 @@ __all__ = [
     "add_json",
     "add_scene",
     "add_state",
+    "assignments",
     "count",
     "print_json",
     "read_state",
@@ -77,11 +78,12 @@ def read_state_words(options: argparse.Namespace, scene: Scene) -> tuple[list[st
         keys = " ".join(f"{k.name}=EXPR" for k in scene.keys)
         raise InputError(f"--state is needed: one of {known}, or {keys}")
     names = [word for word in options.state if "=" not in word]
-    given = _assignments([word for word in options.state if "=" in word], "--state")
-    return names, given, _assignments(options.parameters, "--set")
+    given = assignments([word for word in options.state if "=" in word], "--state")
+    return names, given, assignments(options.parameters, "--set")
 
 
-def _assignments(words: Sequence[str], option: str) -> dict[str, str]:
+def assignments(words: Sequence[str], option: str) -> dict[str, str]:
+    """NAME=EXPR words as a table."""
     table: dict[str, str] = {}
     for word in words:
         name, equals, value = word.partition("=")

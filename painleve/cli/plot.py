@@ -1,0 +1,34 @@
+"""`painleve plot FILE`: the figure of a dataset that was kept."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from painleve.cli.common import add_command, add_json, print_json
+
+
+def register(commands: Any) -> None:
+    parser = add_command(
+        commands, "plot", run, sentence="draw the figure of a dataset that sweep, simulate or a study wrote",
+        example="painleve plot sweep.h5 -o sweep.pdf",
+    )  # fmt: skip
+    parser.add_argument("file", type=Path, metavar="FILE", help="the HDF5 file")
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="FIGURE", help="a .pdf, .png or .svg file (default: FILE with .png)"
+    )
+    add_json(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    from painleve.plotting import draw, save_figure
+    from painleve.store import check_writable, load
+
+    target = check_writable(options.output or options.file.with_suffix(".png"))
+    written = save_figure(draw(load(options.file)), target)
+    if options.json:
+        print_json({"file": str(written)})
+    else:
+        print(written)
+    return 0
