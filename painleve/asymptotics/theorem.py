@@ -13,10 +13,12 @@ from painleve.asymptotics.limit_set import LimitSet, limit_set
 from painleve.asymptotics.witness import find_family
 from painleve.mechanics.neighbourhood import Neighbourhood, Neighbours, neighbours
 from painleve.mechanics.state import State
+from painleve.sets import Bounds
 
 __all__ = ["Branch", "Classification", "Evidence", "Status", "Verdict", "classify", "collect", "judge", "slope"]
 
 SHADOW = 1e-3  # how near, in units of eps, the witnesses of eq. (10) are asked to come
+ROUNDING = 1e-12  # relative, of half the segment's length as it is compared with bounds
 LEAST_SLOPE = 0.5  # of an excess that tends to zero: k = 1 has slope 1 and no state is known to have less than 1/2
 
 
@@ -131,48 +133,86 @@ def collect(classification: Classification, eps: float, measure: Callable[[Limit
 def judge(classification: Classification, evidence: Sequence[Evidence]) -> Verdict:
     """What the evidence says of the branch's statement.
 
-    CONSISTENT rests on one-sided numbers, PROVED on enclosures at every eps given (the limit itself is the theorem's);
-    REFUTED needs a bound that the statement forbids.
+    CONSISTENT rests on one-sided numbers, PROVED on enclosures at every eps given (the limit itself is the theorem's).
+    REFUTED needs a bound that the statement forbids whatever happens at smaller eps. Balls are nested, so e(A, A_eps)
+    can only grow as eps falls, and a lower bound on it does; e(A_eps, A) can always fall later, as it does where mu is
+    so near to critical that eps does not resolve the difference: numbers that have not begun to fall decide nothing.
     """
-    branch = classification.branch
-    isolated = branch is Branch.CRITICAL_ISOLATED
-    excesses = [(e.ends if isolated else e.distance).excess_Aeps_A.bounds.lower or 0.0 for e in evidence]
-    rate = slope([e.eps for e in evidence], excesses)
+    forward = [_forward(classification, e) for e in evidence]
+    rate = slope([e.eps for e in evidence], [bounds.lower or 0.0 for bounds in forward])
     status, reason = _status(classification, evidence, rate)
-    return Verdict(branch=branch, status=status, reason=reason, slope=rate)
+    return Verdict(branch=classification.branch, status=status, reason=reason, slope=rate)
+
+
+def _forward(classification: Classification, evidence: Evidence) -> Bounds:
+    """Of e(A_eps, .), from the set that A_eps tends to."""
+    isolated = classification.branch is Branch.CRITICAL_ISOLATED
+    return (evidence.ends if isolated else evidence.distance).excess_Aeps_A.bounds
 
 
 def _status(classification: Classification, evidence: Sequence[Evidence], rate: float | None) -> tuple[Status, str]:
     if classification.branch is Branch.UNDECIDED:
         return Status.UNDECIDED, classification.reason
+    forbidden = _forbidden(classification, evidence)
+    if forbidden is not None:
+        return Status.REFUTED, forbidden
     if rate is None:
         return Status.UNDECIDED, "distances at two values of eps at least are needed"
     if rate < LEAST_SLOPE:
-        return Status.REFUTED, f"e(A_eps, A) falls like eps^{rate:.2f} only: members of A_eps stay away from A"
+        return Status.UNDECIDED, (f"members of A_eps have not come nearer at these eps (eps^{rate:.2f}): "
+                                  "smaller ones are needed, or they stay away")  # fmt: skip
     if classification.branch is Branch.CRITICAL_ISOLATED:
         return _isolated_status(classification, evidence)
     missing = [e.eps for e in evidence if e.witnessed is None]
     if missing:
         return Status.UNDECIDED, f"no witnesses of e(A, A_eps) -> 0 were found at eps = {missing[0]:g}"
-    if all(e.distance.excess_Aeps_A.bounds.upper is not None for e in evidence):
+    if _enclosed(classification, evidence):
         return Status.PROVED, "both excesses are enclosed at every eps, and witnesses shadow all of A"
     return Status.CONSISTENT, "members of A_eps come as near to A as eps, and witnesses shadow all of A"
 
 
+def _forbidden(classification: Classification, evidence: Sequence[Evidence]) -> str | None:
+    """Where (10) holds e(A, A_eps) is zero at every eps; at an isolated state it never exceeds half the segment."""
+    isolated = classification.branch is Branch.CRITICAL_ISOLATED
+    most = _half(classification) * (1.0 + ROUNDING) if isolated else 0.0
+    for e in evidence:
+        lower = e.distance.excess_A_Aeps.bounds.lower
+        if lower is not None and lower > most:
+            return f"at eps = {e.eps:g} and all below it, e(A, A_eps) is at least {lower:.3g}; {most:.3g} is allowed"
+    return None
+
+
 def _isolated_status(classification: Classification, evidence: Sequence[Evidence]) -> tuple[Status, str]:
     """e(A, A_eps) must tend to half the segment's length: members near the ends come no nearer."""
-    half = float(np.linalg.norm(classification.limit.jump)) / 2.0
+    half = _half(classification)
     last = min(evidence, key=lambda e: e.eps)
     backward = last.distance.excess_A_Aeps.bounds
-    if backward.upper is not None and backward.upper < 0.5 * half:
-        return Status.REFUTED, f"at eps = {last.eps:g} all of A is within {backward.upper:.3g} of A_eps"
-    enclosed = all(
-        e.ends.excess_Aeps_A.bounds.upper is not None and e.distance.excess_A_Aeps.bounds.lower is not None
-        for e in evidence
-    )
-    if enclosed:
+    if backward.upper is None and backward.lower is None:
+        return Status.UNDECIDED, "nothing is known of e(A, A_eps)"
+    if backward.upper is not None and backward.upper < half / 2.0:
+        return Status.UNDECIDED, (f"at eps = {last.eps:g} all of A is still within {backward.upper:.3g} of A_eps: "
+                                  "smaller ones are needed, or q is not isolated")  # fmt: skip
+    if _enclosed(classification, evidence) and all(_middle_is_away(half, e) for e in evidence):
         return Status.PROVED, f"enclosures at every eps: A_eps tends to the ends of A, the middle stays {half:.6g} away"
     return Status.CONSISTENT, f"members near the ends of A only are found; the middle of A is {half:.6g} away from them"
+
+
+def _half(classification: Classification) -> float:
+    return float(np.linalg.norm(classification.limit.jump)) / 2.0
+
+
+def _enclosed(classification: Classification, evidence: Sequence[Evidence]) -> bool:
+    """Whether e(A_eps, .) is bounded from above at every eps, by bounds that tend to zero themselves."""
+    uppers = [_forward(classification, e).upper for e in evidence]
+    known = [upper for upper in uppers if upper is not None]
+    rate = slope([e.eps for e in evidence], known) if len(known) == len(uppers) else None
+    return rate is not None and rate >= LEAST_SLOPE
+
+
+def _middle_is_away(half: float, evidence: Evidence) -> bool:
+    """Members within E of the ends leave the middle half - E at least: the enclosure must say no less."""
+    lower, ends = evidence.distance.excess_A_Aeps.bounds.lower, evidence.ends.excess_Aeps_A.bounds.upper
+    return lower is not None and ends is not None and lower >= (half - ends) * (1.0 - ROUNDING)
 
 
 def slope(eps: Sequence[float], values: Sequence[float]) -> float | None:
