@@ -29,7 +29,7 @@ from painleve.sets import Bounds, excess_of_segment_from_profile
 __all__ = ["SAMPLERS", "SampleOptions", "check_eps", "sample_distance", "sample_members"]
 
 SAMPLERS = tuple(s.name.lower() for s in Sampler)
-LANE_BLOCKS = 1024  # half a million samples: some ten milliseconds, so that progress and Ctrl-C come through
+LANE_BLOCKS = 1024  # 800 thousand samples: some ten milliseconds, so that progress and Ctrl-C come through
 BINS = 1024  # the profile along the segment keeps the best sample in each
 MOST_SAMPLES = 2**50
 KINDS = {"point": POINT, "pair": PAIR, "segment": SEGMENT}
@@ -110,8 +110,8 @@ class _Stream:
         )  # fmt: skip
         return tally
 
-    def block(self, start: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """(dq, dv, branch, along, across2) of samples start ... start + BLOCK - 1; dq has all coordinates."""
+    def block(self, start: int) -> tuple[np.ndarray, ...]:
+        """(dq, dv, branch, along, beyond, across2) of samples start ... start + BLOCK - 1; dq has all coordinates."""
         d, shape = self.problem.dimension, len(self.problem.shape)
         uniform = self.code == Sampler.UNIFORM
         x = np.empty((shape + (1 if uniform else d), BLOCK))
@@ -128,13 +128,17 @@ class _Stream:
         dq[list(self.problem.shape)] = x[:shape]
         if self.problem.carried > 0.0:
             dq += self.problem.carried_direction[:, None] * (room / self.problem.carried)
-        return dq, dv.copy(), branch, along, across2
+        return dq, dv.copy(), branch, along, beyond, across2
 
     def member(self, index: int) -> Member:
         """The sample of that index, evaluated rigorously. Raises ArithmeticError where its branch is undecided."""
-        start = index // BLOCK * BLOCK
-        dq, dv, *_ = self.block(start)
-        return make_member(self.problem, dq[:, index - start], dv[:, index - start])
+        dq, dv, *_ = self.block(index // BLOCK * BLOCK)
+        return make_member(self.problem, dq[:, index % BLOCK], dv[:, index % BLOCK])
+
+    def place(self, index: int) -> tuple[float, float]:
+        """(along, across2) of the sample of that index."""
+        *_, along, _, across2 = self.block(index // BLOCK * BLOCK)
+        return float(along[index % BLOCK]), float(across2[index % BLOCK])
 
 
 def check_eps(eps: float) -> float:
@@ -221,10 +225,13 @@ def _excess_of_limit(stream: _Stream, tally: _Tally) -> Attained:
     """An upper bound on e(A, A_eps) from the samples nearest to A, exact for those samples."""
     problem = stream.problem
     if problem.limit.kind == "segment":
+        # The outer bins reach beyond the ends, so that the sample nearest to the line need not be near to the end.
+        ends = tally.best_index[1:]
         known = np.isfinite(tally.bins[2])
-        t, rho = tally.bins[0, known], np.sqrt(tally.bins[2, known])
-        value, place, nearest = excess_of_segment_from_profile(t, rho, problem.length)
-        index, point = int(tally.bin_index[known][nearest]), problem.u + place * problem.direction
+        profile = np.hstack([tally.bins[[0, 2]][:, known], np.array([stream.place(int(i)) for i in ends]).T])
+        value, place, nearest = excess_of_segment_from_profile(profile[0], np.sqrt(profile[1]), problem.length)
+        index = int(np.concatenate([tally.bin_index[known], ends])[nearest])
+        point = problem.u + place * problem.direction
     else:
         ends = 1 if problem.limit.kind == "point" else 2
         worst = int(np.argmax(tally.best[1 : 1 + ends]))
