@@ -77,18 +77,16 @@ def check_schema(dataset: xr.Dataset) -> None:
 def check_writable(path: str | Path) -> Path:
     """The path, if a file can be made there; ask before computing. Raises InputError that says why it cannot."""
     target = Path(path)
-    if target.is_dir():
-        raise InputError(f"output {target}: is a folder; give the name of a file in it")
-    if not target.parent.is_dir():
-        raise InputError(f"output {target}: there is no folder {target.parent}; make it first")
-    if target.exists() and not (target.is_file() and os.access(target, os.W_OK)):
-        raise InputError(f"output {target}: exists and may not be replaced; give another name")
-    aside = _aside(target)
     try:
-        aside.touch()
-        aside.unlink()
+        reason = _obstacle(target)
+        if reason is None:
+            aside = _aside(target)
+            aside.touch()
+            aside.unlink()
     except (OSError, ValueError) as error:
-        raise InputError(f"output {target}: cannot be written ({_why(error)}); give another place") from None
+        reason = f"cannot be written ({_why(error)}); give another place"
+    if reason is not None:
+        raise InputError(f"output {target}: {reason}")
     return target
 
 
@@ -115,14 +113,26 @@ def save(dataset: xr.Dataset, path: str | Path) -> Path:
 def load(path: str | Path) -> xr.Dataset:
     """Read a dataset into memory. Raises InputError for a missing file and for one that `save` did not write."""
     source = Path(path)
-    if not source.is_file():
-        raise InputError(f"input {source}: there is no such file")
     try:
+        if not source.is_file():
+            raise InputError(f"input {source}: there is no such file")
         dataset = xr.load_dataset(source, engine="h5netcdf")
         check_schema(dataset)
+    except InputError:
+        raise
     except (OSError, ValueError, KeyError) as error:
         raise InputError(f"input {source}: not a dataset of this package ({_why(error)})") from None
     return dataset
+
+
+def _obstacle(target: Path) -> str | None:
+    if target.is_dir():
+        return "is a folder; give the name of a file in it"
+    if not target.parent.is_dir():
+        return f"there is no folder {target.parent}; make it first"
+    if target.exists() and not (target.is_file() and os.access(target, os.W_OK)):
+        return "exists and may not be replaced; give another name"
+    return None
 
 
 def _check_variable(name: str, variable: xr.Variable) -> None:
