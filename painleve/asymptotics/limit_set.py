@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -43,7 +44,7 @@ class LimitSet:
         """gamma = 0 at q, and there is a jump."""
         return self.gamma.sign is Sign.ZERO and self.kind != "point"
 
-    @property
+    @cached_property
     def ends(self) -> LimitSet:
         """{u-, u_tilde} alone: what A_eps tends to at an isolated critical state."""
         return replace(self, kind="pair", reason="the ends of A") if self.kind == "segment" else self

@@ -1,0 +1,229 @@
+"""The farthest member of one branch of S over one configuration: all velocities of a ball at once.
+
+For fixed q the law is piecewise linear in v, so on each of its branches dist(S, A) is to be maximised over a ball cut
+by half-spaces (painleve.core.farthest). Velocity offsets are measured in units of the ball's radius, and S relative
+to the limit set as in painleve.core.offset: S = u- + tau (u_tilde - u-) + eps z.
+
+On a slipping branch S = u- + dv + lam Y(1, s) and v_n = -lam p, where p = a + s b may be as small as one likes; lam is
+therefore given, and dv runs over the section of the ball on which v_n = -lam p. Where p -> 0+ this is the closure.
+"""
+
+import math
+
+import numpy as np
+
+from painleve._jit import jit
+from painleve.core.farthest import complete_frame, dot, farthest
+from painleve.core.law import FRICTIONLESS, SLIP_PLUS, STICK
+from painleve.core.reduce import PAIR, POINT
+
+REACH = 3  # instead of a distance: how far S comes back from u_tilde towards u-
+EDGES = 3  # half-spaces at most: v_n <= 0 and the two edges of the cone
+PIECES = EDGES + 1
+
+
+@jit
+def branch_excesses(branch, kind, base, differences, share, eps, u, direction, length, impulse, multiplier,
+                    critical_edge, values, places, impulses):  # fmt: skip
+    """For each column of `differences` (rows minus their base values) the largest distance/eps, -1 where the branch
+    has no member; dv/eps into `places` (d, n) and the normal impulse of the slip into `impulses`.
+
+    share: which impulse a slip has, from 0 to the largest that the ball allows. For REACH the value is
+    -(S - u_tilde).direction/eps, which may have any sign; -inf where there is none.
+    """
+    d = u.size
+    A, c = np.empty((d, d)), np.empty(d)
+    normals, offsets = np.empty((PIECES, d)), np.empty(PIECES)
+    for i in range(values.size):
+        row, change = base + differences[:, i], differences[:, i] / eps
+        values[i], impulses[i] = -1.0 if kind != REACH else -math.inf, 0.0
+        if branch in (STICK, FRICTIONLESS):
+            if branch == STICK:
+                count, tau = _stick(row, change, eps, u, impulse, multiplier, A, c, normals, offsets)
+            else:
+                count, tau = _frictionless(row, change, u, A, c, normals, offsets), 0.0
+            if count >= 0:
+                y = np.zeros(d)
+                values[i] = _excess(
+                    kind, A, c, tau, length / eps, direction, normals, offsets, count, d, 1.0, y
+                )
+                places[:, i] = y
+            continue
+        sense = 1 if branch == SLIP_PLUS else -1
+        start, basis, tau, lam, count = _slip(
+            sense, row, change, share[i], eps, u, impulse, multiplier, critical_edge, c, normals, offsets
+        )
+        left = 1.0 - dot(start, start)
+        if count < 0 or left < 0.0:
+            continue
+        y = np.zeros(d - 1)
+        values[i] = _excess(
+            kind, basis, c, tau, length / eps, direction, normals, offsets, count, d - 1, math.sqrt(left), y
+        )
+        for j in range(d):
+            places[j, i] = start[j] + dot(basis[j], y)
+        impulses[i] = lam
+
+
+@jit
+def _stick(row, change, eps, u, impulse, multiplier, A, c, normals, offsets):
+    """S - (u- or u_tilde) = eps (A y + c) where the tip sticks; returns how many half-spaces, and tau."""
+    d = u.size
+    w, Y_n, a, plus = row[1 : 1 + d], row[1 + d : 1 + 2 * d], row[1 + 2 * d], row[2 + 2 * d]
+    rest, tail = 3 + 2 * d, 3 + 4 * d
+    H, Y_t = row[rest : rest + d], row[rest + d : tail]
+    b, C, minus, mu_plus, mu_minus = row[tail], row[tail + 1], row[tail + 2], row[tail + 3], row[tail + 4]
+    det, (base_n, base_t) = a * C - b * b, (impulse[0], impulse[1])
+    k_n = dot(change[1 : 1 + d], u)
+    lack_n = k_n + change[1 + 2 * d] * base_n + change[tail] * base_t
+    lack_t = dot(change[rest : rest + d], u) + change[tail] * base_n + change[tail + 1] * base_t
+    e_n, e_t = (b * lack_t - C * lack_n) / det, (b * lack_n - a * lack_t) / det
+    E_n, E_t = (b * H - C * w) / det, (b * w - a * H) / det
+    jumps = multiplier > 0.0
+    for j in range(d):
+        c[j] = Y_n[j] * e_n + Y_t[j] * e_t
+        if jumps:
+            c[j] += change[1 + d + j] * base_n + change[rest + d + j] * base_t
+        else:
+            c[j] += (Y_n[j] * base_n + Y_t[j] * base_t) / eps
+        for k in range(d):
+            A[j, k] = Y_n[j] * E_n[k] + Y_t[j] * E_t[k] + (1.0 if j == k else 0.0)
+    count = _half_space(w, -k_n, normals, offsets, 0)
+    for sense, edge, s in ((1.0, plus, mu_plus), (-1.0, minus, -mu_minus)):
+        if edge > 0.0 and count >= 0:
+            least = sense * (base_t * (edge / eps) + edge * e_t + s * k_n)
+            count = _half_space(sense * (edge * E_t + s * w), -least, normals, offsets, count)
+    return count, 1.0 if jumps else 0.0
+
+
+@jit
+def _frictionless(row, change, u, A, c, normals, offsets):
+    d = u.size
+    w, Y_n, a, k_n = row[1 : 1 + d], row[1 + d : 1 + 2 * d], row[1 + 2 * d], dot(change[1 : 1 + d], u)
+    for j in range(d):
+        c[j] = -Y_n[j] * k_n / a
+        for k in range(d):
+            A[j, k] = (1.0 if j == k else 0.0) - Y_n[j] * w[k] / a
+    return _half_space(w, -k_n, normals, offsets, 0)
+
+
+@jit
+def _slip(sense, row, change, share, eps, u, impulse, multiplier, critical_edge, c, normals, offsets):
+    """dv/eps = start + basis y on the section, S - u- - tau jump = eps (basis y + c), the impulse lam; count < 0 where
+    the edge cannot lift the tip or always sticks."""
+    d = u.size
+    w, Y_n, a = row[1 : 1 + d], row[1 + d : 1 + 2 * d], row[1 + 2 * d]
+    rest, tail = 3 + 2 * d, 3 + 4 * d
+    H, Y_t, b, C = row[rest : rest + d], row[rest + d : tail], row[tail], row[tail + 1]
+    edge = row[2 + 2 * d] if sense == 1 else row[tail + 2]
+    s, ds = (row[tail + 3], change[tail + 3]) if sense == 1 else (-row[tail + 4], -change[tail + 4])
+    det, size = a * C - b * b, math.sqrt(dot(w, w))
+    frame = np.zeros((d, d))
+    frame[0] = w / size
+    start, basis = np.zeros(d), np.zeros((d, d - 1))
+    k_n = dot(change[1 : 1 + d], u)
+    lack_n = k_n + change[1 + 2 * d] * impulse[0] + change[tail] * impulse[1]
+    lack_t = dot(change[rest : rest + d], u) + change[tail] * impulse[0] + change[tail + 1] * impulse[1]
+    e_t, E_t = (b * lack_n - a * lack_t) / det, (b * w - a * H) / det
+    # It slips while sense * (the sticking impulse's friction) > |s| lam, and v_n = -lam p is within the ball's reach.
+    drive = sense * (impulse[1] + eps * e_t)
+    most = drive + eps * math.sqrt(dot(E_t, E_t))
+    if edge < 0.0 or most < 0.0 or size < k_n:
+        return start, basis, 0.0, 0.0, -1
+    highest = math.inf if s == 0.0 else most / abs(s)
+    if edge > 0.0:
+        highest = min(highest, eps * (size - k_n) / edge)
+    if highest == math.inf:
+        return start, basis, 0.0, 0.0, -1
+    lam = share * highest
+    start[:] = -(k_n + lam * (edge / eps)) / size * frame[0]
+    complete_frame(frame, 1)
+    basis[:] = frame[1:].T
+    critical = critical_edge == sense
+    for j in range(d):
+        c[j] = start[j]
+        if critical:  # Y (1, s) at the base points along the jump
+            c[j] += lam * (change[1 + d + j] + s * change[rest + d + j] + ds * (Y_t[j] - eps * change[rest + d + j]))
+        else:
+            c[j] += lam / eps * (Y_n[j] + s * Y_t[j])
+    bound = (drive - abs(s) * lam) / eps + sense * (dot(E_t, start))
+    normal = np.empty(d - 1)
+    for k in range(d - 1):
+        normal[k] = -sense * dot(E_t, frame[k + 1])
+    count = _half_space(normal, bound, normals, offsets, 0)
+    return start, basis, lam / multiplier if critical else 0.0, lam, count
+
+
+@jit
+def _half_space(normal, offset, normals, offsets, count):
+    """Add normal . y <= offset, scaled; a vanishing normal leaves all (the same count) or nothing (-1)."""
+    size, length = normal.size, math.sqrt(dot(normal, normal))
+    if length < 1e-14:
+        return count if offset >= 0.0 else -1
+    for j in range(size):
+        normals[count, j] = normal[j] / length
+    offsets[count] = offset / length
+    return count + 1
+
+
+@jit
+def _excess(kind, A, c, tau, length, direction, normals, offsets, count, size, radius, best):
+    """Largest distance of tau jump + A y + c from the limit set over the admissible y, all in units of eps."""
+    rows = c.size
+    slope, level = np.zeros(size), dot(direction, c)
+    for i in range(rows):
+        for j in range(size):
+            slope[j] += direction[i] * A[i, j]
+    reach = math.sqrt(dot(slope, slope)) * radius
+    if kind == REACH:
+        return _back(slope, level + (tau - 1.0) * length, reach, normals, offsets, count, radius, best)
+    start, end = np.empty(rows), np.empty(rows)
+    for i in range(rows):
+        start[i] = c[i] + tau * length * direction[i]
+        end[i] = c[i] + (tau - 1.0) * length * direction[i]
+    if kind == POINT or length == 0.0:
+        return _root(farthest(A, start, normals, offsets, count, size, radius, best))
+    # Near u- where along <= first, near u_tilde where along >= second; along = level + slope . y + tau length.
+    first, second = (0.5 * length, 0.5 * length) if kind == PAIR else (0.0, length)
+    value, y, opposite = -1.0, np.zeros(size), np.empty(size)
+    if level - reach <= first - tau * length:
+        more = _half_space(slope, first - tau * length - level, normals, offsets, count)
+        if more >= 0:
+            value = _better(farthest(A, start, normals, offsets, more, size, radius, y), value, y, best)
+    if level + reach >= second - tau * length:
+        for j in range(size):
+            opposite[j] = -slope[j]
+        more = _half_space(opposite, level + tau * length - second, normals, offsets, count)
+        if more >= 0:
+            value = _better(farthest(A, end, normals, offsets, more, size, radius, y), value, y, best)
+    if kind != PAIR:
+        across = np.empty((rows, size))
+        for i in range(rows):
+            end[i] = c[i] - level * direction[i]
+            for j in range(size):
+                across[i, j] = A[i, j] - direction[i] * slope[j]
+        value = _better(farthest(across, end, normals, offsets, count, size, radius, y), value, y, best)
+    return _root(value)
+
+
+@jit
+def _back(slope, level, reach, normals, offsets, count, radius, best):
+    """max -(level + slope . y): squared after a shift that makes it positive."""
+    shift, form = 2.0 * reach + abs(level) + 1.0, np.empty((1, slope.size))
+    for j in range(slope.size):
+        form[0, j] = -slope[j]
+    value = farthest(form, np.array([shift - level]), normals, offsets, count, slope.size, radius, best)
+    return math.sqrt(value) - shift if value >= 0.0 else -math.inf
+
+
+@jit
+def _better(value, known, y, best):
+    if value > known:
+        best[:] = y
+        return value
+    return known
+
+
+@jit
+def _root(squared):
+    return math.sqrt(squared) if squared >= 0.0 else -1.0
