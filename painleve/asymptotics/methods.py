@@ -6,8 +6,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from painleve.asymptotics.certify import CertifyOptions, certify_distance
 from painleve.asymptotics.distance import Distance
 from painleve.asymptotics.limit_set import LimitSet
+from painleve.asymptotics.optimise import OptimiseOptions, optimise_distance
 from painleve.asymptotics.sample import SampleOptions, sample_distance
 from painleve.errors import InputError
 
@@ -24,6 +26,8 @@ class Method:
 
 METHODS: Mapping[str, Method] = MappingProxyType({
     "sample": Method(measure=sample_distance, options=SampleOptions),
+    "optimise": Method(measure=optimise_distance, options=OptimiseOptions),
+    "certify": Method(measure=certify_distance, options=CertifyOptions),
 })  # fmt: skip
 
 
