@@ -11,7 +11,8 @@ import pytest
 from reference_law import Reference, gamma_squared, law, norm, to_mp
 
 from painleve.asymptotics.limit_set import LimitSet, limit_set
-from painleve.asymptotics.member import Member
+from painleve.asymptotics.local import make_local_problem
+from painleve.asymptotics.member import Member, make_member
 from painleve.asymptotics.witness import find_family, find_witness
 from painleve.core.codes import Branch
 from painleve.errors import InputError
@@ -60,6 +61,23 @@ def distance(limit: LimitSet, offset: mpmath.matrix, fraction: float) -> mpmath.
 def inside(member: Member, eps: float) -> bool:
     """Both offsets in their balls."""
     return all(norm([to_mp(x) for x in offset]) <= to_mp(eps) for offset in member.preimage)
+
+
+@pytest.mark.parametrize(("scene", "name"), [("slender_rod", "paradox"), *APPROACHED, *ISOLATED])
+def test_a_member_at_any_offset_is_the_law_of_the_definition_out_of_contact_too(scene, name):
+    limit, rng = limit_of(scene, name), np.random.default_rng(3)
+    problem, branches = make_local_problem(limit), set()
+    for i in range(12):
+        dq, dv = (1e-3 * rng.normal(size=len(limit.state.q)) for _ in range(2))
+        member = make_member(problem, dq, dv if i % 2 else -np.abs(dv))
+        branches.add(member.branch)
+        with mpmath.workdps(DIGITS):
+            offset = exact_offset(limit, member)
+            found = [to_mp(x) for x in member.enclosure]
+            assert norm([x - y for x, y in zip(offset, found, strict=True)]) < mpmath.mpf(10) ** -80
+            out = reference_of(scene).at_state(limit.state, dq).g < 0
+        assert not out or member.branch is Branch.FREE
+    assert len(branches) > 1
 
 
 @pytest.mark.parametrize("eps", EPS)
