@@ -9,42 +9,77 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from painleve.asymptotics.certify import CertifyOptions
     from painleve.asymptotics.limit_set import limit_set
     from painleve.asymptotics.methods import distance
+    from painleve.asymptotics.optimise import OptimiseOptions
     from painleve.asymptotics.sample import SampleOptions
-    from painleve.asymptotics.theorem import classify
+    from painleve.asymptotics.theorem import classify, collect, judge
     from painleve.asymptotics.witness import find_family, find_witness
+    from painleve.dynamics.ensemble import run_ensemble
+    from painleve.dynamics.simulate import simulate
+    from painleve.dynamics.start import make_start
     from painleve.errors import InputError
     from painleve.mechanics.derive import derive
     from painleve.mechanics.library import SCENE_NAMES, load_scene
+    from painleve.mechanics.scene import make_scene
     from painleve.mechanics.state import make_state
+    from painleve.plotting.draw import draw, save_figure
+    from painleve.store import load, save
+    from painleve.sweep.distances import sweep_distances
 
 _HOMES = {
+    "CertifyOptions": "painleve.asymptotics.certify",
     "InputError": "painleve.errors",
+    "OptimiseOptions": "painleve.asymptotics.optimise",
     "SCENE_NAMES": "painleve.mechanics.library",
     "SampleOptions": "painleve.asymptotics.sample",
     "classify": "painleve.asymptotics.theorem",
+    "collect": "painleve.asymptotics.theorem",
     "derive": "painleve.mechanics.derive",
     "distance": "painleve.asymptotics.methods",
+    "draw": "painleve.plotting.draw",
     "find_family": "painleve.asymptotics.witness",
     "find_witness": "painleve.asymptotics.witness",
+    "judge": "painleve.asymptotics.theorem",
     "limit_set": "painleve.asymptotics.limit_set",
+    "load": "painleve.store",
     "load_scene": "painleve.mechanics.library",
+    "make_scene": "painleve.mechanics.scene",
+    "make_start": "painleve.dynamics.start",
     "make_state": "painleve.mechanics.state",
+    "run_ensemble": "painleve.dynamics.ensemble",
+    "save": "painleve.store",
+    "save_figure": "painleve.plotting.draw",
+    "simulate": "painleve.dynamics.simulate",
+    "sweep_distances": "painleve.sweep.distances",
 }
 
 __all__ = [
     "SCENE_NAMES",
+    "CertifyOptions",
     "InputError",
+    "OptimiseOptions",
     "SampleOptions",
     "classify",
+    "collect",
     "derive",
     "distance",
+    "draw",
     "find_family",
     "find_witness",
+    "judge",
     "limit_set",
+    "load",
     "load_scene",
+    "make_scene",
+    "make_start",
     "make_state",
+    "run_ensemble",
+    "save",
+    "save_figure",
+    "simulate",
+    "sweep_distances",
 ]
 
 
