@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Generator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 
@@ -285,7 +285,7 @@ def _jump_time(tally: _Tally, start: float, width: float) -> tuple[float, float,
     return float(tally.first), float(median), float(tally.last)
 
 
-def _lanes(task: _Task, threads: int) -> Iterator[tuple[int, Members]]:
+def _lanes(task: _Task, threads: int) -> Generator[tuple[int, Members], None, None]:
     """The lanes as they finish, with a bounded number in flight; what has not begun is dropped on closing."""
     firsts = iter(range(0, task.count, task.lane))
     pool = ThreadPoolExecutor(threads)

@@ -102,16 +102,17 @@ class _Run:
         if mode is Mode.FRICTIONLESS:
             return force
         if mode is Mode.STICK:
-            return force | {
-                _falling(lambda t, y, s=side: self.reserve(t, y, s)): (lambda s=side: self.begin_slip(s))
-                for side in (Mode.SLIP_PLUS, Mode.SLIP_MINUS)
-            }
+            return {**force, **self.edge_event(Mode.SLIP_PLUS), **self.edge_event(Mode.SLIP_MINUS)}
         sign = 1.0 if mode is Mode.SLIP_MINUS else -1.0
         return {
             _falling(lambda t, y: sign * self.point(t, y).v_t): self.after_contact,
             _falling(lambda t, y: -self.point(t, y).beta_n): lambda: Mode.FREE,
             _falling(lambda t, y: self.point(t, y).edge(mode)): self.lose_edge,
         }
+
+    def edge_event(self, side: Mode) -> dict[Event, Callable[[], Mode]]:
+        """Sticking ends when its force reaches an edge of the cone."""
+        return {_falling(lambda t, y: self.reserve(t, y, side)): lambda: self.begin_slip(side)}
 
     def reserve(self, t: float, y: np.ndarray, side: Mode) -> float:
         """How far the sticking force is from an edge of the cone."""

@@ -1,0 +1,89 @@
+"""Small scenes of which the motion is known, and a slow reference of the paper's scheme."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import sympy as sp
+
+from painleve.mechanics.scene import Coordinate, Parameter, Scene, Segment, make_scene
+
+X, Y, T = (sp.Symbol(name, real=True) for name in ("x", "y", "t"))
+U_X, U_Y = sp.symbols("u_x u_y", real=True)
+
+
+@cache
+def block(*, frictional: bool = True) -> Scene:
+    """A point over the floor y = 0 with M^-1 = [[1, B], [B, 2]], B = beta + bend sin(x), |B| < sqrt(2), and a force.
+
+    With beta = bend = 0 it is a mass 1 in x and 1/2 in y that falls and slides.
+    """
+    names = ("beta", "bend", "mu", "weight", "drag", "beat")
+    parameters = [
+        Parameter(name=n, unit="1", sentence=n, default="0", range="nonnegative" if n == "mu" else "real")
+        for n in names
+    ]
+    beta, bend, mu, weight, drag, beat = (p.symbol for p in parameters)
+    B = beta + bend * sp.sin(X)
+    inverse = sp.Matrix([[1, B], [B, 2]])
+    return make_scene(
+        name="block" if frictional else "smooth_block",
+        sentence="a point with coupled inertia above a floor",
+        source="the project's notes, section 6, minimal scene",
+        coordinates=[Coordinate(name=n, unit="m", sentence=n) for n in ("x", "y")],
+        parameters=parameters,
+        inertia=inverse.inv().applyfunc(sp.simplify),
+        force=sp.Matrix([-drag * U_X + beat * sp.sin(3 * T), -weight / 2]),
+        constraint=-Y,
+        tangential_displacements=[X] if frictional else [],
+        friction=Segment(minus=mu, plus=mu) if frictional else None,
+    )
+
+
+class Reference:
+    """The paper's scheme in plain NumPy: M, f and g as the scene gives them, S as the least energy on a segment."""
+
+    def __init__(self, scene: Scene, values: dict[str, float]) -> None:
+        numbers = {p.symbol: values[p.name] for p in scene.parameters}
+        self.scene = scene
+        arguments = (T, *scene.q, *scene.u)
+        normal = sp.Matrix([-sp.diff(scene.constraint, x) for x in scene.q])
+        friction = scene.friction or Segment(minus=sp.Integer(0), plus=sp.Integer(0))
+        tangents = scene.tangents if scene.friction else sp.zeros(scene.dimension, 1)
+        quantities = (scene.inertia, scene.force, scene.constraint, normal, tangents, friction.minus, friction.plus)
+        self.functions = [sp.lambdify(arguments, sp.sympify(e).xreplace(numbers)) for e in quantities]
+
+    def at(self, t: float, q: np.ndarray, u: np.ndarray) -> list[np.ndarray]:
+        return [np.asarray(f(t, *q, *u), float) for f in self.functions]
+
+    def step(self, t: float, h: float, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        q = q + h * u
+        M, f, g, w, H, minus, plus = self.at(t + h, q, u)
+        w, H = w.ravel(), H.ravel()
+        v = u + h * np.linalg.solve(M, f.ravel())
+        if g < 0.0 or w @ v >= 0.0:
+            return q, v
+        Yn, Yt = np.linalg.solve(M, w), np.linalg.solve(M, H)
+        # All admissible right velocities lie on v + Yn r_n + Yt r_t with w . u = 0: one parameter r_t.
+        a, b = w @ Yn, w @ Yt
+        base, slope = v - Yn * (w @ v) / a, Yt - Yn * b / a
+        low, high = -np.inf, np.inf
+        # -minus r_n <= r_t <= plus r_n and r_n >= 0, r_n = -(w . v + b r_t)/a, each as alpha r_t <= bound
+        for alpha, bound in ((1 + plus * b / a, -plus * (w @ v) / a), (-1 + minus * b / a, -minus * (w @ v) / a),
+                             (b / a, -(w @ v) / a)):  # fmt: skip
+            if alpha > 0:
+                high = min(high, bound / alpha)
+            elif alpha < 0:
+                low = max(low, bound / alpha)
+        if not self.scene.friction:
+            return q, base
+        best = -(base @ M @ slope) / (slope @ M @ slope)
+        return q, base + slope * min(max(best, low), high)
+
+    def run(self, q: np.ndarray, u: np.ndarray, steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        t, path = 0.0, [(q, u)]
+        for h in steps:
+            path.append(self.step(t, h, *path[-1]))
+            t += h
+        return np.array([x for x, _ in path]), np.array([x for _, x in path])

@@ -1,0 +1,205 @@
+"""Event-driven and compliant contact, and jumps without collision on Glocker's rod."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from dynamics_scenes import block
+from scipy.integrate import solve_ivp
+
+from painleve.core.codes import Branch
+from painleve.core.motion_codes import Change, Ending
+from painleve.dynamics.modes import ContactPoint, closed_modes
+from painleve.dynamics.simulate import simulate
+from painleve.dynamics.start import as_start, make_start
+from painleve.errors import InputError
+from painleve.mechanics.library import load_scene
+from painleve.mechanics.state import make_state
+
+ROD = load_scene("slender_rod")
+STOSS = make_state(ROD, "stoss")
+
+
+def test_the_smooth_slip_of_glockers_rod_reaches_45_degrees_at_the_published_instant() -> None:
+    found = simulate(STOSS, scheme="event_driven", step=0.1, until=1.0)
+    assert found.ending is Ending.INCONSISTENT
+    assert "grows without bound" in found.sentence
+    assert found.t[-1] == pytest.approx(0.81455, abs=5e-6)
+    assert found.q[-1, 2] == pytest.approx(math.pi / 4, abs=1e-8)
+    # The singular point has zero free normal acceleration too: spin^2 = gravity / (l sin theta). It is approached
+    # along a curve whose tangent the eigenvalue ratio 2/3 makes slow, hence the wide bound.
+    assert found.u[-1, 2] ** 2 == pytest.approx(10 / math.sin(math.pi / 4), rel=1e-3)
+
+
+def test_the_slip_of_the_event_driven_method_is_the_reduced_equation_of_the_rod() -> None:
+    found = simulate(STOSS, scheme="event_driven", step=0.05, until=0.5)
+
+    def reduced(t: float, z: np.ndarray) -> list[float]:
+        theta, spin = z
+        force = (10 - spin**2 * math.sin(theta)) / (
+            1 + 3 * math.cos(theta) ** 2 - 5 * math.sin(theta) * math.cos(theta))
+        return [spin, 3 * force * (5 / 3 * math.sin(theta) - math.cos(theta))]
+
+    slow = solve_ivp(reduced, (0, 0.5), [math.radians(31), 0.0], rtol=1e-11, atol=1e-13, t_eval=[0.5])
+    np.testing.assert_allclose(found.q[-1, 2], slow.y[0, -1], rtol=1e-8)
+    np.testing.assert_allclose(found.u[-1, 2], slow.y[1, -1], rtol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("omega", "mu", "gamma_sign", "beta_sign", "modes"),
+    [
+        (0, "1/2", 1, -1, {Branch.SLIP_PLUS}),
+        (5, "1/2", 1, 1, {Branch.FREE}),
+        (0, "2", -1, -1, set()),
+        (5, "2", -1, 1, {Branch.FREE, Branch.SLIP_PLUS}),
+    ],
+)
+def test_slip_has_the_four_published_regimes(
+    omega: int, mu: str, gamma_sign: int, beta_sign: int, modes: set[Branch]
+) -> None:
+    start = as_start(make_state(ROD, keys={"theta": "atan(2)", "omega": omega}, parameters={"mu": mu}))
+    point = ContactPoint.at(start, 0.0, np.array(start.q), np.array(start.u))
+    sine, cosine = 2 / math.sqrt(5), 1 / math.sqrt(5)
+    assert math.copysign(1, 1 + 3 * cosine**2 - 3 * float(Fraction(mu)) * sine * cosine) == gamma_sign
+    beta = -9.81 + omega**2 * sine
+    assert point.beta_n == pytest.approx(beta, rel=1e-12)
+    assert math.copysign(1, beta) == beta_sign
+    assert set(closed_modes(point, -1)) == modes
+    found = simulate(start, scheme="event_driven", step=1e-3, until=1e-3)
+    expected = {0: Ending.INCONSISTENT, 1: Ending.REACHED_END, 2: Ending.INDETERMINATE}[len(modes)]
+    assert found.ending is expected
+    if expected is Ending.INDETERMINATE:
+        assert found.sentence.endswith("(two: lift-off, slip_plus; at t = 0)")
+
+
+def test_a_tip_at_rest_has_every_mode_that_solves_newtons_law() -> None:
+    """Each mode is put back into M a = f + W lambda and Coulomb's law, and they are counted another way."""
+    random, counts = np.random.default_rng(0), set()
+    for _ in range(300):
+        parameters = {"beta": random.uniform(-1.2, 1.2), "mu": random.uniform(0.1, 6.0), "weight": random.normal() * 5,
+                      "beat": random.normal() * 20, "drag": 0.0, "bend": 0.0}  # fmt: skip
+        start = make_start(block(), q={"x": 0, "y": 0}, parameters={k: float(v) for k, v in parameters.items()})
+        point = ContactPoint.at(start, 0.5, np.array(start.q), np.array(start.u))
+        modes = closed_modes(point, 0)
+        counts.add(len(modes))
+        for mode in modes:
+            normal, tangential = point.force(mode)
+            a_t, a_n = np.array(point.acceleration) + point.response(normal, tangential)
+            assert normal >= 0.0
+            assert a_n >= -1e-10
+            assert abs(normal * a_n) < 1e-9
+            assert abs(tangential) <= parameters["mu"] * normal + 1e-9
+            assert abs(a_t) < 1e-9 or mode is Branch.FREE or tangential * a_t == pytest.approx(
+                -parameters["mu"] * normal * abs(a_t), rel=1e-9)  # fmt: skip
+        assert len(modes) == solutions_by_friction_ratio(point, parameters["mu"])
+    assert counts == {1, 3}  # an odd number, but where two of them merge
+
+
+def solutions_by_friction_ratio(point: ContactPoint, mu: float) -> int:
+    """Lift-off, and the sign changes along lambda_t = s lambda_n, s in [-mu, mu], of a_t with a_n = 0 kept."""
+    count = int(point.beta_n >= 0.0)
+    (b_nn, b_nt), b_tt = (point.a, point.b), point.C
+
+    def tangential(s: float) -> tuple[float, float]:
+        normal = -point.beta_n / (b_nn + b_nt * s)
+        return normal, point.beta_t + (b_nt + b_tt * s) * normal
+
+    for s, sign in ((mu, -1.0), (-mu, 1.0)):
+        normal, a_t = tangential(s)
+        count += normal > 0.0 and sign * a_t > 0.0
+    root = (b_nn * point.beta_t - b_nt * point.beta_n) / (b_tt * point.beta_n - b_nt * point.beta_t)  # a_t(s) = 0
+    return count + int(abs(root) <= mu and tangential(root)[0] > 0.0)
+
+
+def test_a_slip_that_ends_sticks_and_stays() -> None:
+    start = make_start(block(), q={"x": 0, "y": 0}, u={"x": 2}, parameters={"mu": 0.25, "weight": 10})
+    found = simulate(start, scheme="event_driven", step=0.1, until=3.0)
+    assert found.ending is Ending.REACHED_END
+    assert found.q[-1, 0] == pytest.approx(2.0**2 / (2 * 0.25 * 5.0), rel=1e-9)
+    assert abs(found.u[-1, 0]) < 1e-12
+    # the impulses are what the floor gave: it carried the weight for three seconds
+    assert found.r[:, 0].sum() == pytest.approx(5.0 * 3.0, rel=1e-9)
+    assert found.r[:, 1].sum() == pytest.approx(-2.0, rel=1e-9)
+
+
+def test_a_rod_falls_hits_and_slides_in_closed_form() -> None:
+    start = make_start(ROD, q={"x": 0, "y": 2, "theta": "pi/4"}, u={"x": -1}, parameters={"mu": "1/2"})
+    found = simulate(start, scheme="event_driven", step=0.1, until=0.55)
+    height = 2 - math.sin(math.pi / 4)
+    arrival, speed = math.sqrt(2 * height / 9.81), math.sqrt(2 * height * 9.81)
+    (jump,) = found.jumps
+    assert jump.kind is Change.FRICTIONAL_IMPACT
+    assert jump.time == pytest.approx(arrival, rel=1e-9)
+    np.testing.assert_allclose(jump.u_minus, [-1, -speed, 0], atol=1e-8)
+    w, H, inverse = np.array([0, 1, -math.sqrt(0.5)]), np.array([1, 0, math.sqrt(0.5)]), np.diag([1, 1, 3])
+    W = np.column_stack([w, H])
+    stick = -np.linalg.solve(W.T @ inverse @ W, W.T @ [-1, -speed, 0])
+    s = np.clip(stick[1] / stick[0], -0.5, 0.5)
+    impulse = speed / (w @ inverse @ (w + s * H))
+    np.testing.assert_allclose(jump.u_plus, [-1, -speed, 0] + inverse @ (w + s * H) * impulse, atol=1e-8)
+
+
+def test_stiffer_compliant_contacts_come_closer_to_the_rigid_slide() -> None:
+    state = make_state(ROD, keys={"theta": "pi/3", "slip": -3, "omega": 1}, parameters={"mu": "3/10"})
+    rigid = simulate(state, scheme="event_driven", step=0.1, until=0.1)
+    distances = []
+    for stiffness in (1e4, 1e6):
+        soft = simulate(state, scheme="compliant", step=0.05, until=0.1, options={"stiffness": stiffness})
+        assert soft.ending is Ending.REACHED_END
+        distances.append(np.abs(soft.q[-1] - rigid.q[-1]).max())
+    assert distances[1] < distances[0] / 20  # the penetration is weight/stiffness: a hundredth
+    assert distances[1] < 1e-4
+
+
+def test_a_compliant_contact_sticks_fast_where_the_rigid_one_has_no_acceleration() -> None:
+    found = simulate(make_state(ROD, "paradox"), scheme="compliant", step=0.01, until=0.05)
+    quantities = found.contact_quantities()
+    assert quantities["v_t"][0] == pytest.approx(-1.0)
+    assert abs(quantities["v_t"][-1]) < 0.05
+    assert found.jumps == ()
+
+
+@pytest.mark.parametrize("name", ["stiffness", "damping_ratio", "slip_speed", "rtol"])
+def test_compliant_options_must_be_positive(name: str) -> None:
+    with pytest.raises(InputError, match=f"scheme compliant: {name} = -1.0 must be a positive number"):
+        simulate(STOSS, scheme="compliant", step=0.1, until=0.1, options={name: -1.0})
+
+
+def test_the_jump_of_glockers_rod_has_no_collision_and_does_not_shrink_with_the_step() -> None:
+    sizes, approaches, steps = [], [], (1e-3, 1e-4, 1e-5)
+    for h in steps:
+        for factor in np.linspace(0.9, 1.1, 12):
+            found = simulate(STOSS, step=float(h * factor), until=0.85, monitor=False)
+            jumps = [j for j in found.jumps if j.kind is Change.JUMP_WITHOUT_COLLISION]
+            if jumps:
+                jump = jumps[0]
+                w = np.array([0.0, 1.0, -math.cos(found.q[jump.index, 2])])
+                sizes.append(np.linalg.norm(jump.u_plus - jump.u_minus))
+                approaches.append(abs(w @ jump.u_minus))
+                assert found.branch[jump.index] == Branch.STICK
+                assert found.jumps[0] is jump
+                break
+    assert len(sizes) == len(steps)
+    assert min(sizes) > 5.0
+    assert approaches[0] > 20 * approaches[2]
+
+
+def test_ordinary_sliding_has_no_jump_at_any_step_size() -> None:
+    state = make_state(ROD, keys={"theta": "pi/3", "slip": -3, "omega": 1}, parameters={"mu": "3/10"})
+    for h in (1e-2, 1e-3, 1e-4):
+        assert simulate(state, step=h, until=0.3, monitor=False).jumps == ()
+
+
+def test_a_collision_is_told_from_a_jump_without_one_although_gamma_is_negative() -> None:
+    start = make_start(ROD, q={"x": 0, "y": 2, "theta": "atan(2)"}, u={"x": -1}, parameters={"mu": 2})
+    (jump, *_) = simulate(start, step=1e-3, until=0.6).jumps
+    assert jump.kind is Change.FRICTIONAL_IMPACT
+    assert jump.gamma < 0.0
+    (tangential,) = simulate(make_state(ROD, "paradox"), step=1e-3, until=0.1).jumps
+    assert tangential.kind is Change.JUMP_WITHOUT_COLLISION
+    (smooth,) = simulate(make_start(block(frictional=False), q={"x": 0, "y": 1}, u={"x": 1},
+                                    parameters={"weight": 10}), step=1e-3, until=1.0).jumps  # fmt: skip
+    assert smooth.kind is Change.IMPACT
