@@ -226,11 +226,11 @@ def _excess_of_limit(stream: _Stream, tally: _Tally) -> Attained:
     problem = stream.problem
     if problem.limit.kind == "segment":
         # The outer bins reach beyond the ends, so that the sample nearest to the line need not be near to the end.
-        ends = tally.best_index[1:]
+        nearest_to_ends = tally.best_index[1:]
         known = np.isfinite(tally.bins[2])
-        profile = np.hstack([tally.bins[[0, 2]][:, known], np.array([stream.place(int(i)) for i in ends]).T])
+        profile = np.hstack([tally.bins[[0, 2]][:, known], np.array([stream.place(int(i)) for i in nearest_to_ends]).T])
         value, place, nearest = excess_of_segment_from_profile(profile[0], np.sqrt(profile[1]), problem.length)
-        index = int(np.concatenate([tally.bin_index[known], ends])[nearest])
+        index = int(np.concatenate([tally.bin_index[known], nearest_to_ends])[nearest])
         point = problem.u + place * problem.direction
     else:
         ends = 1 if problem.limit.kind == "point" else 2
