@@ -376,8 +376,12 @@ class _Sheet:
         n = len(upper)
         if self.shape == 2:
             grid = spread.reshape(n, 2, 2, -1)
-            along, around = grid[:, 0] - grid[:, 1], grid[:, :, 0] - grid[:, :, 1]
-            loss = [np.abs(x).max(axis=(1, 2)) for x in (along, around)]
+            along, around = (np.abs(x).max(axis=(1, 2)) for x in (grid[:, 0] - grid[:, 1], grid[:, :, 0] - grid[:, :, 1]))
+            # The polygon is longer than the box by the height of its arcs, which only narrower angles reduce.
+            length = self.boxes.hi[:, 0] - self.boxes.lo[:, 0]
+            half = 0.5 * (self.boxes.hi[:, 1] - self.boxes.lo[:, 1])
+            share = length / (self.boxes.hi[:, 0] / np.cos(half) - self.boxes.lo[:, 0])
+            loss = [along * share, around + along * (1.0 - share)]
         else:
             loss = [np.abs(spread[:, 0] - spread[:, 1]).max(axis=1)] if self.shape else []
         if self.piece.lam is not None:
