@@ -13,7 +13,7 @@ from functools import partial
 
 import numpy as np
 
-__all__ = ["Chart", "charts"]
+__all__ = ["Chart", "Conditions", "charts"]
 
 Conditions = Callable[[np.ndarray], np.ndarray]  # (s, n) offsets -> (c, n) values, all >= 0 where there are members
 

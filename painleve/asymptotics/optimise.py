@@ -10,19 +10,20 @@ The search finds the supremum over the closure, and that is an estimate; the bou
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 
 import flint
 import numpy as np
 
-from painleve.asymptotics.charts import Chart, charts
 from painleve.asymptotics.distance import Attained, Distance
 from painleve.asymptotics.limit_set import LimitSet
-from painleve.asymptotics.local import BITS, Arithmetic, LocalProblem, make_local_problem
+from painleve.asymptotics.local import BITS, Arithmetic, Expansion, LocalProblem, make_local_problem
 from painleve.asymptotics.member import Member, base_balls, make_member, row_balls
 from painleve.asymptotics.sample import KINDS, check_eps
+from painleve.asymptotics.search import SLIPS, Found, Search
 from painleve.asymptotics.witness import find_family
-from painleve.core.branch_excess import REACH, branch_excesses
+from painleve.core.branch_excess import REACH
 from painleve.core.codes import Branch
 from painleve.core.taylor import monomial_block, polynomial_block
 from painleve.errors import InputError
@@ -30,14 +31,9 @@ from painleve.sets import Bounds, excess_of_segment_from_profile
 
 __all__ = ["OptimiseOptions", "optimise_distance"]
 
-GRIDS = {0: 1, 1: 33, 2: 9, 3: 9}  # points an axis of a box of that size
-LAST_STEP = 2.0**-36
-MOST_ROUNDS = 400  # for places from which a top is approached slowly; the second search shows what was left
 NUDGES = (0.0, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9)  # off the boundary of a branch, to be inside for certain
 SHADOW = 1e-9  # of eps: how near witnesses of e(A, A_eps) are asked to come
 ROUNDED = 2.0**-51  # of the jump: witnesses are placed along it by doubles and come no nearer
-PROGRESS = 1e-15  # relative; less is rounding, on which a search could wander for ever
-SLIPS = {Branch.SLIP_PLUS: "edge_plus", Branch.SLIP_MINUS: "edge_minus"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,165 +46,6 @@ class OptimiseOptions:
     def __post_init__(self) -> None:
         if not 1 <= self.starts <= 1000:
             raise InputError(f"starts: {self.starts} must be between 1 and 1000")
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Found:
-    """The best place of a search: value in units of eps, where, and what a second search from there added."""
-
-    value: float
-    branch: Branch
-    x: np.ndarray
-    dv: np.ndarray
-    impulse: float
-    error: float
-
-
-class _Search:
-    """The ball around one state, in units of its radius."""
-
-    def __init__(self, problem: LocalProblem, eps: float, options: OptimiseOptions) -> None:
-        self.problem, self.eps, self.options = problem, eps, options
-        self.expansion = problem.expansion(eps, options.arithmetic)
-        self.kind = KINDS[problem.limit.kind]
-        planar = problem.limit.state.scene.friction is not None
-        self.branches = (Branch.STICK, *SLIPS) if planar else (Branch.FRICTIONLESS,)
-        self.counts = {b.label: 0 for b in (Branch.FREE, *self.branches)}
-
-    def differences(self, x: np.ndarray) -> np.ndarray:
-        """Rows minus their base values at the shape offsets eps x (s, n)."""
-        problem, dq, n = self.problem, np.ascontiguousarray(self.eps * x), x.shape[1]
-        values = np.empty((len(problem.table), n))
-        if self.expansion is not None:
-            monomials = np.empty((self.expansion.polynomials.parents.size, n))
-            monomial_block(self.expansion.polynomials, dq, monomials)
-            polynomial_block(self.expansion.polynomials, monomials, values)
-        else:
-            problem.kernels.varying_block(dq, problem.q, problem.p, problem.base, values)
-        full = np.zeros((problem.base.size, n))
-        full[list(problem.kernels.rows.varying)] = values
-        return full
-
-    def charts(self, branch: Branch) -> list[Chart]:
-        """Where the branch has members, over its shape offsets."""
-        rows, problem = self.problem.kernels.rows, self.problem
-
-        def conditions(x: np.ndarray) -> np.ndarray:
-            change = self.differences(x)
-            room = problem.carried * np.sqrt(np.maximum(0.0, 1.0 - np.sum(x * x, axis=0)))
-            contact = change[0] / self.eps + room
-            if branch not in SLIPS:
-                return contact[None, :]
-            edge = rows.index(SLIPS[branch])
-            return np.stack([contact, problem.base[edge] + change[edge]])
-
-        return list(charts(len(problem.shape), conditions))
-
-    def values(
-        self, branch: Branch, chart: Chart, box: np.ndarray, kind: int
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Value, shape offset, dv/eps and impulse at points (chart.size [+ 1], n) of the box."""
-        p, x = self.problem, chart.place(box)
-        known = ~np.isnan(x).any(axis=0)
-        n = int(known.sum())
-        value, dv, impulse = np.empty(n), np.zeros((p.dimension, n)), np.empty(n)
-        share = np.ascontiguousarray(box[-1][known]) if branch in SLIPS else np.zeros(n)
-        branch_excesses(
-            int(branch), kind, p.base, self.differences(x[:, known]), share, self.eps, p.u, p.direction, p.length,
-            p.impulse, p.multiplier, p.critical_edge, value, dv, impulse,
-        )  # fmt: skip
-        self.counts[branch.label] += n
-        all_values = np.full(box.shape[1], -np.inf)
-        all_values[known] = np.where(value == -1.0, -np.inf, value) if kind != REACH else value
-        wide = np.zeros((p.dimension + 1, box.shape[1]))
-        wide[:-1, known], wide[-1, known] = dv, impulse
-        return all_values, x, wide[:-1], wide[-1]
-
-    def best(self, branches: tuple[Branch, ...], kind: int) -> _Found | None:
-        """The best place of all charts of the branches."""
-        found = [self._search(b, chart, kind) for b in branches for chart in self.charts(b)]
-        return max((f for f in found if f is not None), key=lambda f: f.value, default=None)
-
-    def _search(self, branch: Branch, chart: Chart, kind: int) -> _Found | None:
-        size = chart.size + (branch in SLIPS)
-        axis = np.linspace(0.0, 1.0, GRIDS[size])
-        grid = _lattice(axis, size)
-        value = self.values(branch, chart, grid, kind)[0]
-        peaks = _peaks(value.reshape((axis.size,) * size))[: self.options.starts]
-        if not peaks.size:
-            return None
-        first = self._refine(branch, chart, grid[:, peaks], 0.5 / (axis.size - 1) if size else 0.0, kind)
-        top = first[:, [int(np.argmax(first[-1]))]]
-        again = self._refine(branch, chart, top[:-1], 1e-3 if size else 0.0, kind)
-        value, x, dv, impulse = self.values(branch, chart, again[:-1], kind)
-        return _Found(
-            value=float(value[0]), branch=branch, x=x[:, 0], dv=dv[:, 0], impulse=float(impulse[0]),
-            error=abs(float(again[-1, 0] - top[-1, 0])),
-        )  # fmt: skip
-
-    def _refine(self, branch: Branch, chart: Chart, places: np.ndarray, step: float, kind: int) -> np.ndarray:
-        """Move each place to the best point of a stencil, which grows on a slope and shrinks at a top."""
-        size, n = places.shape
-        stencil = _lattice(np.array([0.0, -1.0, 1.0]), size)
-        best, steps, value = places.copy(), np.full(n, step), self.values(branch, chart, places, kind)[0]
-        for _ in range(MOST_ROUNDS):
-            at = np.flatnonzero(steps > LAST_STEP)
-            if not at.size:
-                break
-            tried = np.clip(best[:, at, None] + steps[at, None] * stencil[:, None, :], 0.0, 1.0)
-            values = self.values(branch, chart, tried.reshape(size, -1), kind)[0].reshape(at.size, -1)
-            winner = np.argmax(values, axis=1)
-            each = np.arange(at.size)
-            better = values[each, winner] > value[at] + PROGRESS * np.abs(value[at])
-            best[:, at] = np.where(better, tried[:, each, winner], best[:, at])
-            value[at] = np.where(better, values[each, winner], value[at])
-            steps[at] *= np.where(better, 2.0, 0.5)  # a slope is gone up in strides, a top is closed in on
-        return np.vstack([best, value])
-
-    def member(self, found: _Found) -> Member | None:
-        """The true member nearest to what was found, nudged off the boundaries of its branch as little as it takes."""
-        for nudge, tilt in sorted(product(NUDGES, repeat=2), key=sum):
-            dq = self._configuration(found, nudge, tilt)
-            dv = self._velocity(found, dq, nudge, tilt)
-            if not (_inside(dq, self.eps) and _inside(dv, self.eps)):
-                continue
-            try:
-                member = make_member(self.problem, dq, dv)
-            except ArithmeticError:
-                continue
-            if member.branch is found.branch:
-                return member
-        return None
-
-    def _configuration(self, found: _Found, nudge: float, tilt: float) -> list[flint.arb]:
-        """dq with as much penetration as the ball allows, and a tilt of the shape into it."""
-        p = self.problem
-        dq = np.zeros(p.dimension)
-        dq[list(p.shape)] = found.x * (self.eps * (1.0 - 1e-15 - nudge))
-        room = max(0.0, self.eps**2 * (1.0 - 4e-15) - float(dq @ dq))
-        dq += p.carried_direction * np.sqrt(room) * (p.carried > 0.0)
-        inward = -p.base[1 : 1 + p.dimension]
-        inward = inward / np.linalg.norm(inward) * (p.carried == 0.0)
-        with flint.ctx.workprec(BITS):
-            tilted = zip(dq, tilt * self.eps * inward, strict=True)
-            return [flint.arb(float(x)) + flint.arb(float(y)) for x, y in tilted]
-
-    def _velocity(self, found: _Found, dq: list[flint.arb], nudge: float, tilt: float) -> list[flint.arb]:
-        """dv; where the tip slips, corrected so that v_n = -lam p to the last digit, however small p is."""
-        p, d = self.problem, self.problem.dimension
-        dv = [flint.arb(float(x)) for x in found.dv * (self.eps * (1.0 - 1e-15 - nudge))]
-        normal = p.base[1 : 1 + d]
-        if found.branch not in SLIPS:
-            pull = nudge * self.eps / float(np.linalg.norm(normal))
-            return [x - flint.arb(float(pull * y)) for x, y in zip(dv, normal, strict=True)]
-        with flint.ctx.workprec(BITS):
-            rows, u = row_balls(p, dq), base_balls(p)[2]
-            w = rows[1 : 1 + d]
-            v_n = sum((x * (y + z) for x, y, z in zip(w, u, dv, strict=True)), flint.arb(0))
-            lam = flint.arb(found.impulse) * (1 - flint.arb(tilt)) + flint.arb(nudge * self.eps)
-            lack = -lam * rows[p.kernels.rows.index(SLIPS[found.branch])] - v_n
-            squared = sum((x * x for x in w), flint.arb(0))
-            return [flint.arb((x + lack * y / squared).mid()) for x, y in zip(dv, w, strict=True)]
 
 
 def optimise_distance(limit: LimitSet, eps: float, options: OptimiseOptions | None = None) -> Distance:
@@ -224,7 +61,9 @@ def optimise_distance(limit: LimitSet, eps: float, options: OptimiseOptions | No
     if len(problem.shape) > 2:
         raise InputError(f"optimise: scene {limit.state.scene.name} has {len(problem.shape)} coordinates on which the "
                          "law depends; at most 2 are searched; use the method sample")  # fmt: skip
-    search = _Search(problem, eps, options)
+    expansion = problem.expansion(eps, options.arithmetic)
+    differences = partial(_differences, problem, eps, expansion)
+    search = Search(problem, eps, KINDS[limit.kind], differences, starts=options.starts)
     forward, estimate, error = _excess_of_members(search)
     backward, how = _excess_of_limit(search)
     evaluations = sum(search.counts.values())
@@ -238,31 +77,31 @@ def optimise_distance(limit: LimitSet, eps: float, options: OptimiseOptions | No
         counts=dict(search.counts), evaluations=evaluations, ending=ending,
         settings={
             "estimate": estimate, "estimated_error": error, "starts": options.starts,
-            "arithmetic": f"taylor, order {search.expansion.order}" if search.expansion else "plain",
+            "arithmetic": f"taylor, order {expansion.order}" if expansion else "plain",
         },
     )  # fmt: skip
 
 
-def _excess_of_members(search: _Search) -> tuple[Attained, float, float]:
+def _excess_of_members(search: Search) -> tuple[Attained, float, float]:
     """e(A_eps, A): the bound, the estimate of the supremum, and its estimated relative error."""
     free, found = _free_member(search, away=True), search.best(search.branches, search.kind)
     if found is None or found.value <= 1.0:
         return Attained(bounds=Bounds.at_least(free.distance[0]), member=free), search.eps, 0.0
-    member = search.member(found) or free
+    member = _member(search, found) or free
     estimate = found.value * search.eps
     lower = member.distance[0]
     error = max(found.error / found.value, abs(estimate - lower) / estimate)
     return Attained(bounds=Bounds.at_least(lower), member=member), estimate, error
 
 
-def _excess_of_limit(search: _Search) -> tuple[Attained, str]:
+def _excess_of_limit(search: Search) -> tuple[Attained, str]:
     """An upper bound on e(A, A_eps): from witnesses if there are any, else from the members that reach farthest."""
     problem, eps = search.problem, search.eps
     family = find_family(problem.limit, eps, within=max(SHADOW * eps, ROUNDED * problem.length))
     if family is not None:
         return Attained(bounds=Bounds.at_most(family.bound), member=family.last), "witnesses shadow all of A"
     first, reach = _free_member(search, away=False), search.best((Branch.STICK,), REACH)
-    last = search.member(reach) if reach is not None else None
+    last = _member(search, reach) if reach is not None else None
     members = [first] if last is None else [first, last]
     along = [float(m.offset @ problem.direction) for m in members]
     rho = [_above_line(problem, m, t) for m, t in zip(members, along, strict=True)]
@@ -279,7 +118,7 @@ def _above_line(problem: LocalProblem, member: Member, along: float) -> float:
     return float(np.linalg.norm(across))
 
 
-def _free_member(search: _Search, *, away: bool) -> Member:
+def _free_member(search: Search, *, away: bool) -> Member:
     """v_eps itself, as far from A or as far along the jump as the ball allows, over a configuration with g < 0."""
     p = search.problem
     outward = p.base[1 : 1 + p.dimension] / np.linalg.norm(p.base[1 : 1 + p.dimension])
@@ -292,22 +131,69 @@ def _free_member(search: _Search, *, away: bool) -> Member:
     raise ArithmeticError("no configuration with g < 0 was found, yet grad g is not zero")
 
 
+def _differences(problem: LocalProblem, eps: float, expansion: Expansion | None, x: np.ndarray) -> np.ndarray:
+    """Rows minus their base values at the shape offsets eps x (s, n)."""
+    dq, n = np.ascontiguousarray(eps * x), x.shape[1]
+    values = np.empty((len(problem.table), n))
+    if expansion is not None:
+        monomials = np.empty((expansion.polynomials.parents.size, n))
+        monomial_block(expansion.polynomials, dq, monomials)
+        polynomial_block(expansion.polynomials, monomials, values)
+    else:
+        problem.kernels.varying_block(dq, problem.q, problem.p, problem.base, values)
+    full = np.zeros((problem.base.size, n))
+    full[list(problem.kernels.rows.varying)] = values
+    return full
+
+
+def _member(search: Search, found: Found) -> Member | None:
+    """The true member nearest to what was found, nudged off the boundaries of its branch as little as it takes."""
+    for nudge, tilt in sorted(product(NUDGES, repeat=2), key=sum):
+        dq = _configuration(search, found, nudge, tilt)
+        dv = _velocity(search, found, dq, nudge, tilt)
+        if not (_inside(dq, search.eps) and _inside(dv, search.eps)):
+            continue
+        try:
+            member = make_member(search.problem, dq, dv)
+        except ArithmeticError:
+            continue
+        if member.branch is found.branch:
+            return member
+    return None
+
+
+def _configuration(search: Search, found: Found, nudge: float, tilt: float) -> list[flint.arb]:
+    """dq with as much penetration as the ball allows, and a tilt of the shape into it."""
+    p = search.problem
+    dq = np.zeros(p.dimension)
+    dq[list(p.shape)] = found.x * (search.eps * (1.0 - 1e-15 - nudge))
+    room = max(0.0, search.eps**2 * (1.0 - 4e-15) - float(dq @ dq))
+    dq += p.carried_direction * np.sqrt(room) * (p.carried > 0.0)
+    inward = -p.base[1 : 1 + p.dimension]
+    inward = inward / np.linalg.norm(inward) * (p.carried == 0.0)
+    with flint.ctx.workprec(BITS):
+        tilted = zip(dq, tilt * search.eps * inward, strict=True)
+        return [flint.arb(float(x)) + flint.arb(float(y)) for x, y in tilted]
+
+
+def _velocity(search: Search, found: Found, dq: list[flint.arb], nudge: float, tilt: float) -> list[flint.arb]:
+    """dv; where the tip slips, corrected so that v_n = -lam p to the last digit, however small p is."""
+    p, d = search.problem, search.problem.dimension
+    dv = [flint.arb(float(x)) for x in found.dv * (search.eps * (1.0 - 1e-15 - nudge))]
+    normal = p.base[1 : 1 + d]
+    if found.branch not in SLIPS:
+        pull = nudge * search.eps / float(np.linalg.norm(normal))
+        return [x - flint.arb(float(pull * y)) for x, y in zip(dv, normal, strict=True)]
+    with flint.ctx.workprec(BITS):
+        rows, u = row_balls(p, dq), base_balls(p)[2]
+        w = rows[1 : 1 + d]
+        v_n = sum((x * (y + z) for x, y, z in zip(w, u, dv, strict=True)), flint.arb(0))
+        lam = flint.arb(found.impulse) * (1 - flint.arb(tilt)) + flint.arb(nudge * search.eps)
+        lack = -lam * rows[p.kernels.rows.index(SLIPS[found.branch])] - v_n
+        squared = sum((x * x for x in w), flint.arb(0))
+        return [flint.arb((x + lack * y / squared).mid()) for x, y in zip(dv, w, strict=True)]
+
+
 def _inside(x: list[flint.arb], eps: float) -> bool:
     with flint.ctx.workprec(BITS):
         return bool(sum((y * y for y in x), flint.arb(0)) <= flint.arb(float(eps)) ** 2)
-
-
-def _lattice(axis: np.ndarray, size: int) -> np.ndarray:
-    """All points with coordinates from the axis, (size, n)."""
-    return np.array(list(product(axis, repeat=size)), dtype=float).reshape(axis.size**size, size).T
-
-
-def _peaks(values: np.ndarray) -> np.ndarray:
-    """Flat indices of the grid's local maxima, the highest first."""
-    padded = np.pad(values, 1, constant_values=-np.inf)
-    highest = np.full(values.shape, True)
-    for shift in product((0, 1, 2), repeat=values.ndim):
-        window = tuple(slice(s, s + n) for s, n in zip(shift, values.shape, strict=True))
-        highest &= values >= padded[window]
-    flat = np.flatnonzero((highest & np.isfinite(values)).ravel())
-    return flat[np.argsort(-values.ravel()[flat], kind="stable")]
