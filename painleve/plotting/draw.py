@@ -14,9 +14,11 @@ from matplotlib.figure import Figure
 from painleve.errors import InputError
 from painleve.plotting.distances import draw_distances
 from painleve.plotting.gamma_map import draw_gamma_map
+from painleve.plotting.hard_cases import draw_near_critical, draw_rounding, draw_sampled_bound
 from painleve.plotting.members import draw_members
 from painleve.plotting.regimes import draw_regimes
 from painleve.plotting.style import STYLE
+from painleve.plotting.work_precision import draw_work_precision
 from painleve.store import check_writable
 
 __all__ = ["draw", "save_figure"]
@@ -26,6 +28,10 @@ DRAWINGS: Mapping[str, Callable[[xr.Dataset], Figure]] = MappingProxyType({
     "members": draw_members,
     "gamma_map": draw_gamma_map,
     "regimes": draw_regimes,
+    "work_precision": draw_work_precision,
+    "sampled_bound": draw_sampled_bound,
+    "rounding": draw_rounding,
+    "near_critical": draw_near_critical,
 })  # fmt: skip
 # Without dates, the same dataset gives the same bytes.
 WITHOUT_DATE = {"pdf": {"CreationDate": None}, "svg": {"Date": None}, "png": {}}
@@ -37,7 +43,11 @@ def draw(dataset: xr.Dataset) -> Figure:
     if kind not in DRAWINGS:
         raise InputError(f"no figure for a dataset of kind {kind!r}; there are figures of {', '.join(DRAWINGS)}")
     with mpl.rc_context(STYLE):
-        return DRAWINGS[kind](dataset)
+        figure = DRAWINGS[kind](dataset)
+        # Laid out once here and not again for each format: that would be half of the time of saving it.
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")
+    return figure
 
 
 def save_figure(figure: Figure, path: str | Path) -> Path:
