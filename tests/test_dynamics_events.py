@@ -40,7 +40,8 @@ def test_the_slip_of_the_event_driven_method_is_the_reduced_equation_of_the_rod(
     def reduced(t: float, z: np.ndarray) -> list[float]:
         theta, spin = z
         force = (10 - spin**2 * math.sin(theta)) / (
-            1 + 3 * math.cos(theta) ** 2 - 5 * math.sin(theta) * math.cos(theta))
+            1 + 3 * math.cos(theta) ** 2 - 5 * math.sin(theta) * math.cos(theta)
+        )
         return [spin, 3 * force * (5 / 3 * math.sin(theta) - math.cos(theta))]
 
     slow = solve_ivp(reduced, (0, 0.5), [math.radians(31), 0.0], rtol=1e-11, atol=1e-13, t_eval=[0.5])

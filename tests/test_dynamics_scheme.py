@@ -239,6 +239,18 @@ def test_the_contact_problem_agrees_with_all_its_modes_tried_one_by_one() -> Non
     assert several > 50
 
 
+@pytest.mark.parametrize("scheme", STEPPED)
+def test_steps_whose_problem_has_several_solutions_are_counted(scheme: str) -> None:
+    # gamma < 0 and a force that lifts: lift-off, slip and sticking all solve it
+    lifting = make_state(ROD, keys={"theta": "atan(2)"}, parameters={"mu": 2, "gravity": -10})
+    tests_contact = load_scheme(scheme).tests_contact
+    found = simulate(lifting, scheme=scheme, step=1e-3, until=1e-3, contact_tolerance=1e-4 if tests_contact else 0.0)
+    assert found.statistics["steps_with_several_solutions"] == 1
+    assert found.branch[1] == Branch.FREE
+    sliding = simulate(make_state(ROD, "sliding"), scheme=scheme, step=1e-3, until=0.1)
+    assert sliding.statistics["steps_with_several_solutions"] == 0
+
+
 def test_the_record_says_what_the_formulas_say() -> None:
     found = simulate(make_state(ROD, "stoss"), step=1e-2, until=0.5)
     table = found.to_xarray()

@@ -233,9 +233,7 @@ def _check_difference(task: _Task) -> None:
         raise InputError(f"step: {task.until:g}/{least:g} is more than 2^40 steps for one member; take larger steps")
 
 
-def _collect(
-    task: _Task, threads: int | None, keep: bool, progress: Callable[[int], None] | None
-) -> Ensemble:
+def _collect(task: _Task, threads: int | None, keep: bool, progress: Callable[[int], None] | None) -> Ensemble:
     if threads is not None and threads < 1:
         raise InputError(f"threads: {threads} must be at least 1")
     tally, ending = _Tally(), Ending.REACHED_END

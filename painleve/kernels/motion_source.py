@@ -150,6 +150,17 @@ def change_at(h, since, q, u, p, rows, acceleration, v, v_n, r_n, r_t, branch):
 
 
 @jit
+def count_solutions(scheme, tolerance, h, rows, v):
+    """How many impulses solve the contact problem of the step just taken."""
+    v_n, v_t = contact_velocity(rows, D, PLANAR, v)
+    if scheme == STEWART_TRINKLE:
+        return solutions(rows, D, PLANAR, v_n, v_t, -rows[0] / h)
+    if scheme == SCHATZMAN_PAOLI:  # one linearisation, about the free motion; where it pushes there is one solution
+        return solutions(rows, D, PLANAR, 0.0, v_t, -rows[0] / h)
+    return solutions(rows, D, PLANAR, v_n, v_t, 0.0) if rows[0] >= -tolerance else 1
+
+
+@jit
 def run(scheme, theta, tolerance, since, t, h, p, q, u, r, branch, change, several):
     """Take len(h) steps from q[0], u[0]; row i + 1 of each array is for the step that ends at t[i + 1].
 
@@ -166,9 +177,7 @@ def run(scheme, theta, tolerance, since, t, h, p, q, u, r, branch, change, sever
         if code != FREE:
             change[i + 1] = change_at(h[i], since, q1, u0, p, rows, acceleration, v, v_n, r_n, r_t, code)
             since = 0
-        several[i + 1] = 1
-        if code == FREE and rows[0] >= -tolerance:
-            several[i + 1] = solutions(rows, D, PLANAR, v_n, contact_velocity(rows, D, PLANAR, v)[1], 0.0)
+        several[i + 1] = count_solutions(scheme, tolerance, h[i], rows, v)
         r[i + 1, 0], r[i + 1, 1], branch[i + 1] = r_n, r_t, code
         store(q, i + 1, q1)
         store(u, i + 1, u1)
