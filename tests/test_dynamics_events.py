@@ -115,6 +115,17 @@ def solutions_by_friction_ratio(point: ContactPoint, mu: float) -> int:
     return count + int(abs(root) <= mu and tangential(root)[0] > 0.0)
 
 
+@pytest.mark.parametrize(
+    ("scene", "state"),
+    [("slender_rod", "critical"), ("slender_rod", "double_zero"), ("worn_tip_rod", "approached"),
+     ("worn_tip_rod", "isolated"), ("two_link_arm", "approached"), ("two_link_arm", "isolated")],
+)  # fmt: skip
+def test_no_contact_force_is_made_of_a_gamma_that_is_zero_but_for_rounding(scene: str, state: str) -> None:
+    found = simulate(make_state(load_scene(scene), state), scheme="event_driven", step=1e-3, until=0.1)
+    assert found.ending is Ending.INCONSISTENT
+    assert found.t[-1] < 1e-12
+
+
 def test_a_slip_that_ends_sticks_and_stays() -> None:
     start = make_start(block(), q={"x": 0, "y": 0}, u={"x": 2}, parameters={"mu": 0.25, "weight": 10})
     found = simulate(start, scheme="event_driven", step=0.1, until=3.0)

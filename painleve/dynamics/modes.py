@@ -16,6 +16,7 @@ from painleve.dynamics.start import Start
 
 __all__ = ["ContactPoint", "Mode", "closed_modes"]
 
+ROUNDING = 1e-13  # relative: an edge of the cone below this has no sign
 Mode = Branch  # FREE: the contact opens; STICK, SLIP_PLUS, SLIP_MINUS, FRICTIONLESS: it stays closed
 
 
@@ -66,6 +67,11 @@ class ContactPoint:
         """a + b s of a slipping mode."""
         return self.rows[2 + 2 * self.d] if mode is Mode.SLIP_PLUS else self.rows[5 + 4 * self.d]
 
+    def presses(self, mode: Mode) -> bool:
+        """Whether a slipping mode has a positive contact force: none is derived from an edge that rounding made."""
+        known = abs(self.edge(mode)) > ROUNDING * (self.a + abs(self.b * self.ratio(mode)))
+        return known and self.force(mode)[0] > 0.0
+
     def force(self, mode: Mode) -> tuple[float, float]:
         """(lambda_n, lambda_t) that keeps the contact in that mode."""
         if mode is Mode.FREE:
@@ -98,14 +104,14 @@ def closed_modes(point: ContactPoint, slip: int) -> list[Mode]:
         return found or [Mode.FRICTIONLESS]
     if slip != 0:
         mode = Mode.SLIP_MINUS if slip > 0 else Mode.SLIP_PLUS
-        return found + ([mode] if 0.0 < point.force(mode)[0] < math.inf else [])
+        return found + ([mode] if point.presses(mode) else [])
     normal, tangential = point.force(Mode.STICK)
     if normal > 0.0 and point.ratio(Mode.SLIP_MINUS) * normal <= tangential <= point.ratio(Mode.SLIP_PLUS) * normal:
         found.append(Mode.STICK)
     for mode in (Mode.SLIP_PLUS, Mode.SLIP_MINUS):
         normal = point.force(mode)[0]
         s = point.ratio(mode)
-        if 0.0 < normal < math.inf and (point.beta_t + (point.b + point.C * s) * normal) * s < 0.0:
+        if point.presses(mode) and (point.beta_t + (point.b + point.C * s) * normal) * s < 0.0:
             found.append(mode)
     return found
 
