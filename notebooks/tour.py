@@ -68,8 +68,7 @@ for state in rod.states:
 # %% [markdown]
 # Distances against ε: a sample consists of true members of $A_\varepsilon$, so it bounds $e(A_\varepsilon, A)$ from
 # below (▲) and $e(A, A_\varepsilon)$ from above (▼), and proves nothing else. In `double_zero` hardly any sample slips,
-# and the sampled bound gets *worse* as ε falls. The theorem is right, and the witnesses (▽), built as in its proof, show
-# it.
+# and the sampled bound gets *worse* as ε falls. The theorem is right: witnesses (▽), built as in its proof, show it.
 
 # %%
 distances = painleve.sweep_distances(

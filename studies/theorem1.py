@@ -14,7 +14,8 @@ Expected: the exact branch of each state, every verdict `consistent`, every slop
           e(A, A_eps) near 0.418 (worn tip) and 0.5 (arm) in the isolated branch. At `double_zero` and at both states
           `approached` a sample hardly ever slips, its upper bound on e(A, A_eps) stays large, and only the witnesses
           show that the excess vanishes.
-Time:     about a minute, with --quick half of that; most of it is compiling the three scenes once.
+Time:     about a minute on two cores, with --quick somewhat less; drawing takes half of it, and the first run after a
+          change of the sources compiles the three scenes.
 Files:    for each scene the distances over eps, members of A_eps, and the map of gamma: HDF5, PDF and PNG.
 """
 

@@ -93,6 +93,18 @@ def test_every_known_bound_is_drawn_at_its_value(datasets: dict[str, xr.Dataset]
         np.testing.assert_array_equal(drawn["$e(A, A_\\varepsilon)$, upper bound (sample)"], one["excess_A_Aeps_upper"])
 
 
+@pytest.mark.parametrize("tiny", [0.0, 1e-93])
+def test_a_bound_that_is_zero_but_for_rounding_does_not_flatten_the_others(
+    tiny: float, datasets: dict[str, xr.Dataset]
+) -> None:
+    changed = datasets["distances"].copy(deep=True)
+    changed["witnessed_upper"][0] = tiny
+    axis = next(panels(draw(changed)))
+    (foot,) = [line for line in axis.get_lines() if "< 10^{-20}" in str(line.get_label())]
+    assert list(foot.get_xdata()) == list(EPS)
+    assert axis.get_ylim()[0] > 1e-12
+
+
 def test_a_failed_point_is_marked_where_it_was(figures: dict[str, Figure]) -> None:
     for axis in panels(figures["over"]):
         (failed,) = [line for line in axis.get_lines() if line.get_label() == "failed"]

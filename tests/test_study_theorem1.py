@@ -39,8 +39,10 @@ def rows(finished: tuple[StudyResult, Path, float]) -> dict[tuple[str, str], dic
     return {(row["scene"], row["state"]): row for row in finished[0].data["rows"]}
 
 
-def test_a_quick_run_takes_less_than_a_minute_of_processor_time(finished: tuple[StudyResult, Path, float]) -> None:
-    assert finished[2] < 60.0
+def test_a_quick_run_takes_at_most_a_fifth_of_the_ten_minutes_that_ci_has(
+    finished: tuple[StudyResult, Path, float],
+) -> None:
+    assert finished[2] < 120.0  # of processor time, compiling the scenes and drawing included
 
 
 def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyResult, Path, float]) -> None:
