@@ -21,8 +21,8 @@ def add_method(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--sampler", metavar="NAME", help="sample: kronecker (default), uniform or boundary")
     parser.add_argument("--threads", type=count, metavar="T", help="sample: threads (default: all cores)")
     parser.add_argument("--arithmetic", choices=("automatic", "taylor", "plain"), help="sample: evaluation near q")
-    parser.add_argument("--width", type=real, metavar="W", help="certify: relative width aimed at")
-    parser.add_argument("--budget", type=real, metavar="SECONDS", help="certify: time after which it stops")
+    parser.add_argument("--width", type=real, metavar="W", help="certify: relative width aimed at (default 1e-6)")
+    parser.add_argument("--budget", type=count, metavar="BOXES", help="certify: boxes after which it stops")
 
 
 @contextmanager

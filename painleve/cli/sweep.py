@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from painleve.cli.common import add_command, add_json, add_scene, add_state, print_json, read_state_words, real
 from painleve.cli.method import add_method, read_method
 from painleve.errors import InputError
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def register(commands: Any) -> None:
@@ -55,12 +61,28 @@ def run(options: argparse.Namespace) -> int:
             options=settings, progress=progress,
         )  # fmt: skip
     save(dataset, target)
-    facts = {"file": str(target), "dimensions": {str(k): int(v) for k, v in dataset.sizes.items()}, "points": points}
+    verdicts = list(_verdicts(dataset))
     if options.json:
-        print_json(facts)
-    else:
-        print(f"{target}: {points} points; `painleve plot {target}` draws them")
+        sizes = {str(name): int(size) for name, size in dataset.sizes.items()}
+        print_json({"file": str(target), "dimensions": sizes, "points": points, "verdicts": verdicts})
+        return 0
+    for verdict in verdicts:
+        print("{point}: {branch}; {status}: {reason}".format(**verdict))
+    print(f"{target}: {points} points; `painleve plot {target}` draws them")
     return 0
+
+
+def _verdicts(dataset: xr.Dataset) -> Iterator[dict[str, str]]:
+    """What the sweep says of Theorem 1 at each state and combination of swept values."""
+    names = {name: dataset[name].attrs["flag_meanings"].split() for name in ("theorem_branch", "verdict")}
+    swept = dataset["verdict"].dims
+    for index in np.ndindex(*dataset["verdict"].shape):
+        spot = dataset[["theorem_branch", "verdict", "verdict_reason"]].isel(dict(zip(swept, index, strict=True)))
+        places = [str(spot["state"].item())]
+        places += [f"{name}={spot[f'{name}_exact'].item()}" for name in swept if name != "state"]
+        branch, status = (names[name][int(spot[name])] for name in ("theorem_branch", "verdict"))
+        reason = str(spot["verdict_reason"].item())
+        yield {"point": " ".join(places), "branch": branch, "status": status, "reason": reason}
 
 
 def _over(words: list[str]) -> dict[str, list[str]]:
