@@ -19,7 +19,7 @@ from painleve.mechanics.parse import exact_number, parse_expression, parse_numbe
 
 X, MU = sympy.symbols("x mu", real=True)
 SYMBOLS = {"x": X, "mu": MU}
-SECONDS = 2.0  # of the processor: far above the milliseconds that a text takes, far below a power tower
+SECONDS = 30.0  # of the processor: what is unbounded takes hours, what is bounded far less on any machine
 
 HOSTILE = [
     "__import__('os').system('touch pwned')",

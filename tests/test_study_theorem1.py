@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib.util
-import time
 from pathlib import Path
 from types import ModuleType
 
@@ -29,24 +28,17 @@ def load_study() -> ModuleType:
 
 
 @pytest.fixture(scope="module")
-def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path, float]:
-    folder, started = tmp_path_factory.mktemp("theorem1"), time.process_time()
-    result = load_study().run(folder, quick=True)
-    return result, folder, time.process_time() - started
+def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path]:
+    folder = tmp_path_factory.mktemp("theorem1")
+    return load_study().run(folder, quick=True), folder
 
 
-def rows(finished: tuple[StudyResult, Path, float]) -> dict[tuple[str, str], dict]:
+def rows(finished: tuple[StudyResult, Path]) -> dict[tuple[str, str], dict]:
     return {(row["scene"], row["state"]): row for row in finished[0].data["rows"]}
 
 
-def test_a_quick_run_takes_at_most_a_fifth_of_the_ten_minutes_that_ci_has(
-    finished: tuple[StudyResult, Path, float],
-) -> None:
-    assert finished[2] < 120.0  # of processor time, compiling the scenes and drawing included
-
-
-def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyResult, Path, float]) -> None:
-    result, folder, _ = finished
+def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyResult, Path]) -> None:
+    result, folder = finished
     kinds, suffixes = ("distances", "members", "gamma_map"), ("h5", "pdf", "png")
     expected = {f"{kind}_{scene}.{suffix}" for kind in kinds for scene in SCENE_NAMES for suffix in suffixes}
     assert {path.name for path in folder.iterdir()} == expected
@@ -59,7 +51,7 @@ def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyRe
 
 @pytest.mark.parametrize(("scene", "state"), STATES)
 def test_the_table_tells_the_branch_that_exact_arithmetic_decides(
-    scene: str, state: str, finished: tuple[StudyResult, Path, float]
+    scene: str, state: str, finished: tuple[StudyResult, Path]
 ) -> None:
     exact = classify(make_state(load_scene(scene), state)).branch.value
     assert rows(finished)[scene, state]["branch"] == exact
@@ -69,7 +61,7 @@ def test_the_table_tells_the_branch_that_exact_arithmetic_decides(
 
 @pytest.mark.parametrize(("scene", "state"), STATES)
 def test_no_statement_is_contradicted_and_every_excess_falls_like_eps(
-    scene: str, state: str, finished: tuple[StudyResult, Path, float]
+    scene: str, state: str, finished: tuple[StudyResult, Path]
 ) -> None:
     row = rows(finished)[scene, state]
     assert row["verdict"] in ("consistent", "proved")
@@ -78,7 +70,7 @@ def test_no_statement_is_contradicted_and_every_excess_falls_like_eps(
 
 @pytest.mark.parametrize(("scene", "length"), [("worn_tip_rod", 0.7**0.5), ("two_link_arm", 1.0)])
 def test_in_the_isolated_branch_half_of_the_segment_stays_away(
-    scene: str, length: float, finished: tuple[StudyResult, Path, float]
+    scene: str, length: float, finished: tuple[StudyResult, Path]
 ) -> None:
     # By hand at tan(theta) = 2: u_tilde - u- = (2/5, 3/10, 3/(2 sqrt(5))); the arm stops, and its u- has length 1.
     row = rows(finished)[scene, "isolated"]
@@ -87,7 +79,7 @@ def test_in_the_isolated_branch_half_of_the_segment_stays_away(
 
 
 def test_the_hard_state_shows_both_the_misleading_sample_and_the_witnesses(
-    finished: tuple[StudyResult, Path, float],
+    finished: tuple[StudyResult, Path],
 ) -> None:
     row = rows(finished)["slender_rod", "double_zero"]
     assert row["excess_A_Aeps"]["upper"] > 0.1
