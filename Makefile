@@ -2,6 +2,7 @@
 # have to be there; uv is used where it is found, because it installs the same lock in less time.
 
 PYTHON ?= python3
+STUDY ?= theorem1
 STUDY_FLAGS ?=
 
 SHELL := /bin/sh
@@ -20,11 +21,11 @@ help: ## list the targets
 
 install: $(STAMP) ## install the locked versions and the package itself into .venv
 
-study: install ## install, then run the study of Theorem 1 (STUDY_FLAGS=--quick for a reduced one)
-	$(BIN)/painleve study theorem1 $(STUDY_FLAGS)
+study: install ## install, then run the study of Theorem 1 (STUDY=name for another, STUDY_FLAGS=--quick for a reduced run)
+	$(BIN)/painleve study $(STUDY) $(STUDY_FLAGS)
 
 test: lint types contracts $(NOTEBOOKS) ## install, then check the code, run the tests and execute the notebooks
-	$(BIN)/python -m pytest -n 2 --dist loadfile tests $(if $(NOTEBOOKS),--nbmake --nbmake-timeout=120 $(NOTEBOOKS))
+	$(BIN)/python -m pytest -n 2 --dist loadfile tests $(if $(NOTEBOOKS),--nbmake --nbmake-timeout=300 $(NOTEBOOKS))
 
 lint: install ## check the code with ruff
 	$(BIN)/ruff check .
