@@ -92,6 +92,8 @@ BAD = [
     ["distance", "slender_rod", "--state", "paradox", "--eps", "-1e-3"],
     ["distance", "slender_rod", "--state", "paradox", "--eps", "nan"],
     ["distance", "slender_rod", "--state", "paradox", "--eps", "inf"],
+    ["distance", "slender_rod", "--state", "paradox", "--eps", "1e-300"],
+    ["distance", "slender_rod", "--state", "paradox", "--eps", "1e300", "--method", "certify"],
     ["distance", "slender_rod", "--state", "paradox", "--eps", "1e-3", "--method", "guess"],
     ["distance", "slender_rod", "--state", "paradox", "--eps", "1e-3", "--sampler", "dice"],
     ["distance", "slender_rod", "--state", "paradox", "--eps", "1e-3", "--samples", "0"],

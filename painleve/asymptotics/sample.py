@@ -31,6 +31,7 @@ __all__ = ["SAMPLERS", "SampleOptions", "check_eps", "sample_distance", "sample_
 SAMPLERS = tuple(s.name.lower() for s in Sampler)
 LANE_BLOCKS = 1024  # 800 thousand samples: some ten milliseconds, so that progress and Ctrl-C come through
 BINS = 1024  # the profile along the segment keeps the best sample in each
+SMALLEST_EPS, LARGEST_EPS = 1e-30, 1e6  # 320 bits hold eps^2 beside 1 with thirty digits to spare at the least
 MOST_SAMPLES = 2**50
 KINDS = {"point": POINT, "pair": PAIR, "segment": SEGMENT}
 
@@ -142,10 +143,12 @@ class _Stream:
 
 
 def check_eps(eps: float) -> float:
-    """eps as a float. Raises InputError unless it is finite and positive."""
+    """eps as a float. Raises InputError unless it is positive and in the range in which the balls decide signs."""
     value = float(eps)
     if not (np.isfinite(value) and value > 0.0):
         raise InputError(f"eps: {eps} must be a positive number")
+    if not SMALLEST_EPS <= value <= LARGEST_EPS:
+        raise InputError(f"eps: {eps} must lie between {SMALLEST_EPS:g} and {LARGEST_EPS:g}")
     return value
 
 
