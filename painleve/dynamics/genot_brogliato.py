@@ -2,8 +2,8 @@
 
 For m = l = 1 and I = 1/alpha, with t = tan(theta): gamma = 0 at t^2 - mu alpha t + 1 + alpha = 0 (lower edge), the
 normal acceleration of the tip without contact force, beta = omega^2 sin(theta) - gravity, vanishes at the same time,
-and the eigenvalues of the slip in the time dt/p have the ratio r = 2 t^2/(1 + alpha - t^2) (the project's notes, section
-6; F. Génot and B. Brogliato, Eur. J. Mech. A Solids 18 (1999) 653-677). K, D, c: see painleve.core.jam_map.
+and the eigenvalues of the slip in the time dt/p have the ratio r = 2 t^2/(1 + alpha - t^2) (the project's notes,
+section 6; F. Génot and B. Brogliato, Eur. J. Mech. A Solids 18 (1999) 653-677). K, D, c: see painleve.core.jam_map.
 """
 
 from __future__ import annotations
@@ -11,11 +11,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+from scipy.integrate import solve_ivp
+
 from painleve.dynamics.start import Start, make_start
 from painleve.errors import InputError
 from painleve.mechanics.library import load_scene
 
 __all__ = ["SingularPoint", "find_friction", "singular_point"]
+
+CLOSE = 0.02  # of the distance: where the amplitude of a slip is read off
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,6 +62,26 @@ class SingularPoint:
         first = amplitude * distance ** (1.0 + self.ratio) / (1.0 + self.ratio)
         second = self.drift * distance**2 / (2.0 * (1.0 - self.ratio))
         return (first + second) / (step * self.omega * self.curvature)
+
+    def amplitude_at_point(self, distance: float, amplitude: float) -> float:
+        """K with which the slip of that start arrives: `amplitude` corrected for the terms of higher order in x.
+
+        Integrates domega/dx = beta kappa/(p omega) towards the point, or as far as the slip keeps contact (r > 1).
+        """
+        lift_off = 0.0
+        if self.ratio > 1.0:
+            lift_off = (self.drift / ((self.ratio - 1.0) * amplitude)) ** (1.0 / (self.ratio - 1.0))
+        end = max(CLOSE * distance, 1.3 * lift_off)
+        first = math.sqrt((self.gravity + self.acceleration(distance, amplitude)) / math.sin(self.theta - distance))
+        solution = solve_ivp(self._rate, (distance, end), [first], method="DOP853", rtol=1e-11, atol=0.0)
+        beta = solution.y[0, -1] ** 2 * math.sin(self.theta - end) - self.gravity
+        return float((-beta - self.drift * end / (1.0 - self.ratio)) / end**self.ratio)
+
+    def _rate(self, x: float, y: np.ndarray) -> list[float]:
+        """domega/dx of the slip."""
+        s, c, omega = math.sin(self.theta - x), math.cos(self.theta - x), float(y[0])
+        p = 1.0 + self.alpha * c * c - self.mu * self.alpha * s * c
+        return [(omega**2 * s - self.gravity) * self.alpha * (self.mu * s - c) / (p * omega)]
 
     def start(self, *, distance: float, amplitude: float, slip: float) -> Start:
         """The rod in contact at the distance (rad) before the point on the slip K = amplitude, slip < 0 (m/s).

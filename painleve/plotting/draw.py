@@ -16,6 +16,7 @@ from painleve.plotting.distances import draw_distances
 from painleve.plotting.gamma_map import draw_gamma_map
 from painleve.plotting.hard_cases import draw_near_critical, draw_rounding, draw_sampled_bound
 from painleve.plotting.members import draw_members
+from painleve.plotting.plurality import draw_jam_law, draw_step_sizes
 from painleve.plotting.regimes import draw_regimes
 from painleve.plotting.style import STYLE
 from painleve.plotting.work_precision import draw_work_precision
@@ -28,6 +29,8 @@ DRAWINGS: Mapping[str, Callable[[xr.Dataset], Figure]] = MappingProxyType({
     "members": draw_members,
     "gamma_map": draw_gamma_map,
     "regimes": draw_regimes,
+    "step_sizes": draw_step_sizes,
+    "jam_law": draw_jam_law,
     "work_precision": draw_work_precision,
     "sampled_bound": draw_sampled_bound,
     "rounding": draw_rounding,

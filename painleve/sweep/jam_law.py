@@ -1,0 +1,152 @@
+"""The jam law tested: rods on slips into their Génot-Brogliato point, thousands of step sizes each."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from painleve.core.jam_map import jam_fraction, limit_law
+from painleve.core.motion_codes import Outcome
+from painleve.dynamics.ensemble import Ensemble, run_ensemble
+from painleve.dynamics.genot_brogliato import SingularPoint, find_friction, singular_point
+from painleve.dynamics.start import Start
+from painleve.kernels.motion import make_motion
+from painleve.mechanics.library import load_scene
+from painleve.store import provenance
+from painleve.sweep.variables import coded
+
+__all__ = ["CONTACTS", "JamCase", "measure_jam_law"]
+
+CONTACTS = ("strict", "kept")
+KEPT_TOLERANCE = 1e-3  # m: far above what the tip rises on these short slips
+PERIODS = 0.4  # how much the number of hops or steps varies over the window of step sizes, relative
+LONGEST = 8.0  # times the duration of the slip at its first rate: longer than the last hop
+EXPECTED = (Outcome.JUMP, Outcome.LIFT_OFF, Outcome.SLIDE)
+
+
+@dataclass(frozen=True, kw_only=True)
+class JamCase:
+    """A slip and a step size: ratio r, alpha = m l^2/I, slip speed (m/s, < 0), h (s), amplitude K, contact test.
+
+    `length` is how far out the slip starts, in hops (strict) or steps (kept); `count` step sizes are tried.
+    """
+
+    group: str
+    contact: str
+    ratio: float
+    step: float
+    amplitude: float
+    alpha: float = 3.0
+    slip: float = -30.0
+    length: float = 40.0
+    count: int = 10_000
+
+    @property
+    def strict(self) -> bool:
+        return self.contact == "strict"
+
+    @property
+    def point(self) -> SingularPoint:
+        return singular_point(find_friction(self.ratio, alpha=self.alpha), alpha=self.alpha)
+
+    @property
+    def drift(self) -> float:
+        """d of the local map on the slip as it arrives at the point."""
+        point = self.point
+        chosen = point.strict_drift if self.strict else point.kept_drift
+        return chosen(self.step, point.amplitude_at_point(self.distance, self.amplitude))
+
+    @property
+    def neglected(self) -> float:
+        """|beta|/c at the last contacts: the size of what the local map leaves out."""
+        point = self.point
+        x = point.strict_scale(self.step, self.amplitude) if self.strict else self.step * point.omega
+        return self.amplitude * x**self.ratio / point.curvature
+
+    @property
+    def distance(self) -> float:
+        """Where the slip starts (rad before the edge)."""
+        point = self.point
+        if not self.strict:
+            return self.length * self.step * point.omega
+        least = 1.0
+        if self.ratio > 1.0:
+            drift = point.strict_drift(self.step, self.amplitude)
+            least = max(1.0, 2.0 * (drift / (self.ratio - 1.0)) ** (1.0 / (self.ratio - 1.0)))
+        x = least * point.strict_scale(self.step, self.amplitude)
+        while point.hops(x, self.amplitude, self.step) < self.length:
+            x *= 1.02
+        return x
+
+    @property
+    def window(self) -> float:
+        """Relative half width of the step sizes: the phase at the edge then runs over a whole number of periods."""
+        n = self.point.hops(self.distance, self.amplitude, self.step) if self.strict else self.length
+        m = max(1.0, round(PERIODS * n))
+        return (math.sqrt(n * n + m * m) - n) / m  # n/(1 - w) - n/(1 + w) = m
+
+    def start(self) -> Start:
+        return self.point.start(distance=self.distance, amplitude=self.amplitude, slip=self.slip)
+
+    def run(self, seed: int) -> Ensemble:
+        """The ensemble of this case. Raises InputError where there is no such slip."""
+        return run_ensemble(
+            self.start(), step=self.step, count=self.count, until=LONGEST * self.distance / self.point.omega, seed=seed,
+            window=self.window, contact_tolerance=0.0 if self.strict else KEPT_TOLERANCE,
+        )  # fmt: skip
+
+
+def measure_jam_law(
+    cases: Sequence[JamCase], *, seed: int = 0, progress: Callable[[int], None] | None = None,
+    command: str | None = None,
+) -> xr.Dataset:  # fmt: skip
+    """Fractions of step sizes that jam, with Wilson's 95 % intervals, beside the limit law and the local map; (case,).
+
+    A jam is a jump at a tangential contact. A member that has not jammed long after the edge has opened (beta > 0 from
+    there on), whether or not the tip has left fast enough to be called lift-off. What else happens counts as `others`.
+    """
+    ensembles = []
+    for i, case in enumerate(cases):
+        ensembles.append(case.run(seed + i))
+        if progress is not None:
+            progress(1)
+    intervals = np.array([e.interval(Outcome.JUMP) for e in ensembles])
+    predictions = [jam_fraction(c.ratio, c.drift, strict=c.strict) for c in cases]
+    values = {
+        "ratio": ([c.ratio for c in cases], "ratio r of the eigenvalues at the singular point", "1"),
+        "alpha": ([c.alpha for c in cases], "shape of the rod, m l^2/I", "1"),
+        "mu": ([c.point.mu for c in cases], "coefficient of friction", "1"),
+        "slip": ([c.slip for c in cases], "slip velocity at the start", "m/s"),
+        "step": ([c.step for c in cases], "middle of the window of step sizes", "s"),
+        "window": ([c.window for c in cases], "relative half width of the window of step sizes", "1"),
+        "amplitude": ([c.amplitude for c in cases], "amplitude K of the slip, beta = -K x^r - D x/(1 - r)", "SI"),
+        "distance": ([c.distance for c in cases], "distance of the start from the edge", "rad"),
+        "drift": ([c.drift for c in cases], "drift d of the local map at this step size", "1"),
+        "neglected": ([c.neglected for c in cases], "what the map leaves out: beta/c at the last contacts", "1"),
+        "law": ([limit_law(c.ratio, strict=c.strict) for c in cases], "limit of the fraction as h tends to 0", "1"),
+        "local_map": (predictions, "the local map's fraction", "1"),
+        "fraction": ([e.fraction(Outcome.JUMP) for e in ensembles], "measured fraction of step sizes that jam", "1"),
+        "lower": (intervals[:, 0], "lower end of Wilson's 95 % interval for the fraction", "1"),
+        "upper": (intervals[:, 1], "upper end of Wilson's 95 % interval for the fraction", "1"),
+        "count": ([e.count for e in ensembles], "number of step sizes tried here", "1"),
+        "others": (
+            [e.count - sum(e.counts[o] for o in EXPECTED) for e in ensembles],
+            "step sizes that neither jam nor open the contact", "1",
+        ),
+    }  # fmt: skip
+    variables: dict[str, xr.Variable] = {
+        name: xr.Variable(("case",), np.asarray(column), {"long_name": sentence, "units": unit})
+        for name, (column, sentence, unit) in values.items()
+    }
+    codes = np.array([1 + CONTACTS.index(c.contact) for c in cases])
+    variables["contact"] = coded(["case"], codes, CONTACTS, "contact test: strict g >= 0, or tip kept on the floor")
+    groups = np.array([c.group for c in cases], dtype=object)
+    variables["group"] = xr.Variable(("case",), groups, {"long_name": "what the case tests", "units": "1"})
+    scene = load_scene("slender_rod")
+    source = provenance(scene=scene.name, scene_digest=make_motion(scene).digest, seed=seed, command=command)
+    title = "The jam law: which step sizes jam at a Génot-Brogliato point"
+    return xr.Dataset(variables, attrs={"title": title, "kind": "jam_law", **source})

@@ -1,0 +1,182 @@
+"""The jam law: its local map against brute force and closed forms, the singular point, and the study's quick run."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+import time
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from scipy.special import rgamma
+
+from painleve.core.jam_map import jam_fraction, limit_law
+from painleve.dynamics.genot_brogliato import find_friction, singular_point
+from painleve.dynamics.modes import ContactPoint, Mode
+from painleve.errors import InputError
+from painleve.store import load
+from painleve.sweep import StudyResult
+from painleve.sweep.jam_law import JamCase, measure_jam_law
+
+PHASES = 4000
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.37, 2 / 3, 0.95])
+@pytest.mark.parametrize("strict", [True, False])
+def test_without_drift_the_local_map_jams_as_often_as_the_law_says(ratio: float, strict: bool) -> None:
+    assert jam_fraction(ratio, 0.0, strict=strict, phases=PHASES) == pytest.approx(
+        1.0 / (1.0 + ratio) if strict else 1.0 - ratio, abs=2.0 / PHASES
+    )
+    assert limit_law(ratio, strict=strict) == (1.0 / (1.0 + ratio) if strict else 1.0 - ratio)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1.3, 4.0])
+def test_the_limit_is_zero_from_ratio_one_on_and_the_map_gets_there_as_the_drift_grows(ratio: float) -> None:
+    assert limit_law(ratio, strict=True) == limit_law(ratio, strict=False) == 0.0
+    if ratio > 1.0:
+        assert jam_fraction(ratio, 10.0, strict=True, phases=500) == 0.0
+        assert jam_fraction(ratio, 1e-6, strict=True, phases=PHASES) == pytest.approx(1 / (1 + ratio), abs=0.01)
+
+
+@pytest.mark.parametrize(("ratio", "drift"), [(0.3, 0.05), (0.6, 0.4), (0.8, 2.0)])
+def test_with_the_tip_kept_the_fraction_is_where_the_solved_recursion_changes_sign(ratio: float, drift: float) -> None:
+    # b(X) = Gamma(X)/Gamma(X - r) + d (X - 1)/(1 - r), multiplied by 1/Gamma(X)
+    def sign(X: float) -> float:
+        return float(rgamma(X - ratio) + drift * (X - 1.0) / (1.0 - ratio) * rgamma(X))
+
+    threshold = brentq(sign, ratio, 1.0 - 1e-12)
+    assert jam_fraction(ratio, drift, strict=False, phases=PHASES) == pytest.approx(1.0 - threshold, abs=2.0 / PHASES)
+
+
+@pytest.mark.parametrize(("ratio", "drift"), [(0.4, 0.1), (0.75, 0.5), (1.5, 0.05)])
+def test_the_strict_map_is_the_flight_of_the_tip_between_contacts(ratio: float, drift: float) -> None:
+    """Brute force: the tip's height by its polynomial in each flight, roots by NumPy, from uniform places far out."""
+    rng, jams, count = np.random.default_rng(7), 0, 700
+    for start in rng.uniform(15.0, 40.0, count) ** (1.0 / (1.0 + ratio)):
+        x, beta = start, -(start**ratio) - drift * start / (1.0 - ratio)
+        while True:
+            # height/T = (1 + beta T + d T^2/3)/2, velocity beta T + d T^2/2
+            roots = np.roots([drift / 3.0, beta, 1.0])
+            back = roots[(np.abs(roots.imag) == 0.0) & (roots.real > 0.0)].real
+            if len(back) == 0:
+                break
+            T = back.min()
+            x, impulse = x - T, -(beta * T + drift * T * T / 2.0)
+            if x < 0.0:
+                jams += 1
+                break
+            beta += drift * T + ratio * impulse / x
+            if beta >= 0.0:
+                break
+    expected = jam_fraction(ratio, drift, strict=True, phases=PHASES)
+    assert abs(jams / count - expected) < 4.0 * math.sqrt(expected * (1.0 - expected) / count)
+
+
+@pytest.mark.parametrize(("ratio", "drift"), [(0.0, 0.1), (-1.0, 0.1), (1.0, 0.1), (0.5, -0.1), (math.nan, 0.1)])
+def test_a_ratio_or_a_drift_without_a_map_is_refused_in_one_line(ratio: float, drift: float) -> None:
+    with pytest.raises(InputError) as refused:
+        jam_fraction(ratio, drift, strict=True)
+    assert "\n" not in str(refused.value)
+
+
+def test_glockers_rod_has_its_singular_point_at_45_degrees_with_ratio_two_thirds() -> None:
+    point = singular_point(5 / 3)
+    assert point.theta == pytest.approx(math.pi / 4, abs=1e-14)
+    assert point.ratio == pytest.approx(2 / 3, abs=1e-14)
+
+
+@pytest.mark.parametrize("alpha", [1.0, 3.0, 6.0])
+@pytest.mark.parametrize("ratio", [0.3, 0.9, 1.7])
+def test_the_ratio_is_that_of_the_eigenvalues_of_the_slip_near_the_point(alpha: float, ratio: float) -> None:
+    """From the compiled scene: dbeta/dt = -r omega beta/x + D omega close to the point."""
+    point = singular_point(find_friction(ratio, alpha=alpha), alpha=alpha)
+    x, amplitude = 1e-4, 1e-2 * 1e-4 ** (-ratio) / 2
+    amplitude += 2.0 * point.drift * x ** (1.0 - ratio) / abs(1.0 - ratio)
+    start = point.start(distance=x, amplitude=amplitude, slip=-5.0)
+    q, u = np.array(start.q), np.array(start.u)
+    contact = ContactPoint.at(start, 0.0, q, u)
+    force = contact.force(Mode.SLIP_PLUS)
+    du = np.array(contact.acceleration) + contact.response(*force)
+    tau = 1e-7
+    ahead, behind = (ContactPoint.at(start, 0.0, q + s * tau * u, u + s * tau * du).beta_n for s in (1, -1))
+    expected = -ratio * u[2] * contact.beta_n / x + point.drift * u[2]
+    assert (ahead - behind) / (2 * tau) == pytest.approx(expected, rel=5e-3)
+    assert contact.beta_n == pytest.approx(point.acceleration(x, amplitude), rel=1e-9)
+    assert abs(contact.v_n) < 1e-12
+
+
+def test_friction_below_the_critical_one_has_no_singular_point() -> None:
+    with pytest.raises(InputError, match="mu_P"):
+        singular_point(1.3)
+
+
+def test_the_scheme_jams_as_often_as_the_map_says_where_the_map_leaves_out_little() -> None:
+    point = singular_point(find_friction(0.5))
+    cases = [
+        JamCase(group="test", contact="strict", ratio=0.5, step=1e-6, count=2000,
+                amplitude=point.amplitude_of(1e-6, 1.0)),
+        JamCase(group="test", contact="kept", ratio=0.5, step=1e-6, length=100.0, count=2000,
+                amplitude=point.kept_drift(1e-6, 1.0) / 0.01),
+    ]  # fmt: skip
+    found = measure_jam_law(cases, seed=3)
+    deviation = np.abs(found["fraction"] - found["local_map"]).values
+    assert (deviation < 4.0 * np.sqrt(0.25 / 2000) + 3.0 * found["neglected"].values).all()
+    assert found["others"].values.tolist() == [0, 0]
+
+
+def load_study() -> ModuleType:
+    path = Path(__file__).parents[1] / "studies" / "plurality.py"
+    spec = importlib.util.spec_from_file_location("study_plurality", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path, float]:
+    folder, started = tmp_path_factory.mktemp("plurality"), time.process_time()
+    result = load_study().run(folder, quick=True)
+    return result, folder, time.process_time() - started
+
+
+def test_a_quick_run_takes_less_than_forty_seconds_of_processor_time(
+    finished: tuple[StudyResult, Path, float],
+) -> None:
+    assert finished[2] < 40.0
+
+
+def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyResult, Path, float]) -> None:
+    result, folder, _ = finished
+    names = {path.name for path in folder.iterdir()}
+    assert names == {path.name for path in result.files}
+    assert {f"{stem}.{s}" for stem in ("step_sizes", "jam_law") for s in ("h5", "pdf", "png")} <= names
+    for path in result.files:
+        if path.suffix == ".h5":
+            load(path)
+
+
+def test_both_outcomes_are_found_in_every_decade(finished: tuple[StudyResult, Path, float]) -> None:
+    wide = [row for row in finished[0].data["decades"] if row["decades"] == 1.0]
+    assert len(wide) >= 6
+    for row in wide:
+        assert 0.0 < row["interval"][0] < row["interval"][1] < 1.0
+
+
+def test_jumps_tend_to_the_exact_instant(finished: tuple[StudyResult, Path, float]) -> None:
+    data = finished[0].data
+    assert data["instant"] == pytest.approx(0.81455, abs=5e-6)
+    for contact in ("strict", "kept"):
+        late = {r["step"]: r["largest_delay"] for r in data["decades"] if r["contact"] == contact and r["decades"] == 1}
+        delays = [late[step] for step in sorted(late)]
+        assert delays == sorted(delays)
+        assert delays[0] < 0.1 * delays[-1]
+
+
+def test_where_the_map_has_no_jam_none_is_seen(finished: tuple[StudyResult, Path, float]) -> None:
+    for contact in ("strict", "kept"):
+        assert finished[0].data["fits"][contact]["jams_where_the_map_has_none"] == 0
