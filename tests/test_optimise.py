@@ -109,7 +109,7 @@ def distance_to(limit: LimitSet, points: np.ndarray) -> float:
 
 
 def slsqp(limit: LimitSet, eps: float, starts: int = 6) -> float:
-    """max dist(S, A)/eps by scipy's SLSQP over (dq, dv) on each branch of the law, from the definition of its rows."""
+    """max dist(S, A)/eps by scipy's SLSQP over (dq, dv) on each branch of the law, where a + s b is above rounding."""
     problem = make_local_problem(limit)
     d, rows = problem.dimension, np.empty(problem.base.size)
 
@@ -129,7 +129,7 @@ def slsqp(limit: LimitSet, eps: float, starts: int = 6) -> float:
             return v + stick @ Y, [*room, *(-over[s] / eps if edges[s] > 0.0 else 0.0 for s in (1, -1))]
         s = 1 if branch is Branch.SLIP_PLUS else -1
         lam = -v_n / edges[s] if edges[s] > 1e-300 else 0.0
-        return v + lam * (Y_n + s * mu[s] * Y_t), [*room, over[s] / eps, edges[s] / eps]
+        return v + lam * (Y_n + s * mu[s] * Y_t), [*room, over[s] / eps, (edges[s] - 1e-12) / eps]
 
     rng, best = np.random.default_rng(1), 1.0
     for branch in (Branch.STICK, Branch.SLIP_PLUS, Branch.SLIP_MINUS):

@@ -39,26 +39,30 @@ def branch_excesses(branch, kind, base, differences, share, eps, u, direction, l
         values[i], impulses[i] = -1.0 if kind != REACH else -math.inf, 0.0
         if branch in (STICK, FRICTIONLESS):
             if branch == STICK:
-                count, tau = _stick(row, change, eps, u, impulse, multiplier, A, c, normals, offsets)
+                count = _stick(row, change, eps, u, impulse, multiplier, A, c, normals, offsets)
             else:
-                count, tau = _frictionless(row, change, u, A, c, normals, offsets), 0.0
+                count = _frictionless(row, change, u, A, c, normals, offsets)
             if count >= 0:
+                after = length / eps if multiplier > 0.0 else 0.0
                 y = np.zeros(d)
                 values[i] = _excess(
-                    kind, A, c, tau, length / eps, direction, normals, offsets, count, d, 1.0, y
+                    kind, A, c, after, after - length / eps, direction, normals, offsets, count, d, 1.0, y
                 )
                 places[:, i] = y
             continue
         sense = 1 if branch == SLIP_PLUS else -1
-        start, basis, tau, lam, count = _slip(
-            sense, row, change, share[i], eps, u, impulse, multiplier, critical_edge, c, normals, offsets
+        start, basis, lam, more, count = _slip(
+            sense, row, change, share[i], eps, u, impulse, multiplier, critical_edge == sense, c, normals, offsets
         )
         left = 1.0 - dot(start, start)
         if count < 0 or left < 0.0:
             continue
         y = np.zeros(d - 1)
+        after, beyond = 0.0, -length / eps
+        if critical_edge == sense:
+            after, beyond = lam / multiplier * (length / eps), more * (length / multiplier)
         values[i] = _excess(
-            kind, basis, c, tau, length / eps, direction, normals, offsets, count, d - 1, math.sqrt(left), y
+            kind, basis, c, after, beyond, direction, normals, offsets, count, d - 1, math.sqrt(left), y
         )
         for j in range(d):
             places[j, i] = start[j] + dot(basis[j], y)
@@ -67,7 +71,7 @@ def branch_excesses(branch, kind, base, differences, share, eps, u, direction, l
 
 @jit
 def _stick(row, change, eps, u, impulse, multiplier, A, c, normals, offsets):
-    """S - (u- or u_tilde) = eps (A y + c) where the tip sticks; returns how many half-spaces, and tau."""
+    """S - (u- or, after a jump, u_tilde) = eps (A y + c) where the tip sticks; returns how many half-spaces."""
     d = u.size
     w, Y_n, a, plus = row[1 : 1 + d], row[1 + d : 1 + 2 * d], row[1 + 2 * d], row[2 + 2 * d]
     rest, tail = 3 + 2 * d, 3 + 4 * d
@@ -93,7 +97,7 @@ def _stick(row, change, eps, u, impulse, multiplier, A, c, normals, offsets):
         if edge > 0.0 and count >= 0:
             least = sense * (base_t * (edge / eps) + edge * e_t + s * k_n)
             count = _half_space(sense * (edge * E_t + s * w), -least, normals, offsets, count)
-    return count, 1.0 if jumps else 0.0
+    return count
 
 
 @jit
@@ -108,9 +112,12 @@ def _frictionless(row, change, u, A, c, normals, offsets):
 
 
 @jit
-def _slip(sense, row, change, share, eps, u, impulse, multiplier, critical_edge, c, normals, offsets):
-    """dv/eps = start + basis y on the section, S - u- - tau jump = eps (basis y + c), the impulse lam; count < 0 where
-    the edge cannot lift the tip or always sticks."""
+def _slip(sense, row, change, share, eps, u, impulse, multiplier, critical, c, normals, offsets):
+    """dv/eps = start + basis y on the section, and S - u- (less tau jump on the critical edge) = eps (basis y + c).
+
+    Returns start, basis, the impulse lam, more = (lam - multiplier)/eps, formed without cancellation on the critical
+    edge, and how many half-spaces; -1 where the edge cannot lift the tip or always sticks.
+    """
     d = u.size
     w, Y_n, a = row[1 : 1 + d], row[1 + d : 1 + 2 * d], row[1 + 2 * d]
     rest, tail = 3 + 2 * d, 3 + 4 * d
@@ -125,33 +132,33 @@ def _slip(sense, row, change, share, eps, u, impulse, multiplier, critical_edge,
     lack_n = k_n + change[1 + 2 * d] * impulse[0] + change[tail] * impulse[1]
     lack_t = dot(change[rest : rest + d], u) + change[tail] * impulse[0] + change[tail + 1] * impulse[1]
     e_t, E_t = (b * lack_n - a * lack_t) / det, (b * w - a * H) / det
-    # It slips while sense * (the sticking impulse's friction) > |s| lam, and v_n = -lam p is within the ball's reach.
-    drive = sense * (impulse[1] + eps * e_t)
-    most = drive + eps * math.sqrt(dot(E_t, E_t))
-    if edge < 0.0 or most < 0.0 or size < k_n:
+    # It slips while |s| lam < sense * (the sticking impulse's friction). On the critical edge both are |s| multiplier
+    # at the base, and `drive` is what is left of the difference; elsewhere lam itself is compared.
+    drive = sense * (e_t - ds * multiplier) if critical else sense * (impulse[1] / eps + e_t)
+    most, least = drive + math.sqrt(dot(E_t, E_t)), -multiplier / eps if critical else 0.0
+    if edge < 0.0 or most < abs(s) * least or size < k_n:
         return start, basis, 0.0, 0.0, -1
     highest = math.inf if s == 0.0 else most / abs(s)
     if edge > 0.0:
-        highest = min(highest, eps * (size - k_n) / edge)
+        highest = min(highest, (size - k_n) / (edge / eps) / eps + least)
     if highest == math.inf:
         return start, basis, 0.0, 0.0, -1
-    lam = share * highest
+    above = (1.0 - share) * least + share * highest
+    lam, more = (eps * (above - least), above) if critical else (eps * above, above - multiplier / eps)
     start[:] = -(k_n + lam * (edge / eps)) / size * frame[0]
     complete_frame(frame, 1)
     basis[:] = frame[1:].T
-    critical = critical_edge == sense
     for j in range(d):
         c[j] = start[j]
         if critical:  # Y (1, s) at the base points along the jump
             c[j] += lam * (change[1 + d + j] + s * change[rest + d + j] + ds * (Y_t[j] - eps * change[rest + d + j]))
         else:
             c[j] += lam / eps * (Y_n[j] + s * Y_t[j])
-    bound = (drive - abs(s) * lam) / eps + sense * (dot(E_t, start))
     normal = np.empty(d - 1)
     for k in range(d - 1):
         normal[k] = -sense * dot(E_t, frame[k + 1])
-    count = _half_space(normal, bound, normals, offsets, 0)
-    return start, basis, lam / multiplier if critical else 0.0, lam, count
+    count = _half_space(normal, drive - abs(s) * above + sense * dot(E_t, start), normals, offsets, 0)
+    return start, basis, lam, more, count
 
 
 @jit
@@ -167,8 +174,9 @@ def _half_space(normal, offset, normals, offsets, count):
 
 
 @jit
-def _excess(kind, A, c, tau, length, direction, normals, offsets, count, size, radius, best):
-    """Largest distance of tau jump + A y + c from the limit set over the admissible y, all in units of eps."""
+def _excess(kind, A, c, after, beyond, direction, normals, offsets, count, size, radius, best):
+    """Largest distance from the limit set over the admissible y, all in units of eps, of A y + c taken from the point
+    of its line that is `after` u- and `beyond` u_tilde."""
     rows = c.size
     slope, level = np.zeros(size), dot(direction, c)
     for i in range(rows):
@@ -176,24 +184,25 @@ def _excess(kind, A, c, tau, length, direction, normals, offsets, count, size, r
             slope[j] += direction[i] * A[i, j]
     reach = math.sqrt(dot(slope, slope)) * radius
     if kind == REACH:
-        return _back(slope, level + (tau - 1.0) * length, reach, normals, offsets, count, radius, best)
+        return _back(slope, level + beyond, reach, normals, offsets, count, radius, best)
     start, end = np.empty(rows), np.empty(rows)
     for i in range(rows):
-        start[i] = c[i] + tau * length * direction[i]
-        end[i] = c[i] + (tau - 1.0) * length * direction[i]
-    if kind == POINT or length == 0.0:
+        start[i] = c[i] + after * direction[i]
+        end[i] = c[i] + beyond * direction[i]
+    if kind == POINT:
         return _root(farthest(A, start, normals, offsets, count, size, radius, best))
-    # Near u- where along <= first, near u_tilde where along >= second; along = level + slope . y + tau length.
-    first, second = (0.5 * length, 0.5 * length) if kind == PAIR else (0.0, length)
+    # Nearest to u- where level + slope . y <= first, to u_tilde where it is >= second, else to a point between them.
+    half = 0.5 * (after - beyond) if kind == PAIR else 0.0
+    first, second = half - after, -half - beyond
     value, y, opposite = -1.0, np.zeros(size), np.empty(size)
-    if level - reach <= first - tau * length:
-        more = _half_space(slope, first - tau * length - level, normals, offsets, count)
+    if level - reach <= first:
+        more = _half_space(slope, first - level, normals, offsets, count)
         if more >= 0:
             value = _better(farthest(A, start, normals, offsets, more, size, radius, y), value, y, best)
-    if level + reach >= second - tau * length:
+    if level + reach >= second:
         for j in range(size):
             opposite[j] = -slope[j]
-        more = _half_space(opposite, level + tau * length - second, normals, offsets, count)
+        more = _half_space(opposite, level - second, normals, offsets, count)
         if more >= 0:
             value = _better(farthest(A, end, normals, offsets, more, size, radius, y), value, y, best)
     if kind != PAIR:
