@@ -40,7 +40,7 @@ DEGENERATE, NOT_CONVERGED = int(Ending.DEGENERATE), int(Ending.NOT_CONVERGED)
 JUMP, STICKS, LIFT_OFF, IMPACT = int(Outcome.JUMP), int(Outcome.STICK), int(Outcome.LIFT_OFF), int(Outcome.IMPACT)
 SLIDE, FLIGHT, FAILED = int(Outcome.SLIDE), int(Outcome.FLIGHT), int(Outcome.FAILED)
 NOT_SOLVED = -1  # in place of a branch
-ITERATIONS, ACCURACY = 50, 1e-12  # of implicit steps: relative change of the velocity at which they are solved
+ITERATIONS, ACCURACY = 50, 1e-12  # of implicit steps: change, relative to the velocities, at which they are solved
 ROUNDING = 1e-14  # of g; the velocity that would correct it in one step is known to this over h
 
 '''
@@ -76,7 +76,7 @@ def step_moreau_jean(theta, tolerance, t, h, q, u, p):
         rows, acceleration = motion_at(t + (1.0 - theta) * h, middle, mix(theta, u, previous), p)
         v = add(u, h, acceleration)
         u1, v_n, r_n, r_t, branch = solve_contact(rows[0] >= -tolerance, 0.0, rows, v)
-        if close(u1, previous, ACCURACY):
+        if close(u1, previous, v, ACCURACY):
             code = branch
             break
         previous = u1
@@ -102,7 +102,7 @@ def step_schatzman_paoli(t, h, q, u, p):
         rows = rows_at(q1, p)
         bias = -rows[0] / h - contact_velocity(rows, D, False, previous)[0]
         u1, v_n, r_n, r_t, branch = solve_contact(True, bias, rows, v)
-        if close(u1, previous, ACCURACY + ROUNDING / h):
+        if close(u1, previous, v, ACCURACY + ROUNDING / h):
             code = branch
             break
         previous = u1
@@ -289,7 +289,8 @@ def _vectors(scene: Scene) -> list[str]:
         "mix(s, x, y)": [f"return {each('(1.0 - s)*x[{j}] + s*y[{j}]')}"],
         "respond(rows, r_n, r_t, v)": [f"return {each('v[{j}] + rows[{n}]*r_n' + friction)}"],
         "size_of(x)": [f"return {' + '.join(f'abs(x[{j}])' for j in d)}"],
-        "close(x, y, accuracy)": ["bound = accuracy*size_of(x)", f"return {near}"],
+        # Against the free velocity v too: x is v plus an impulse, and rounding in v is all that is left of x at rest.
+        "close(x, y, v, accuracy)": ["bound = accuracy*(size_of(x) + size_of(v))", f"return {near}"],
         "load(x, i)": [f"return {each('x[i, {j}]')}"],
         "store(x, i, y)": [f"x[i, {j}] = y[{j}]" for j in d],
     }
