@@ -7,10 +7,13 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from typing import Generic, TypeVar
 
 import numpy as np
 
-__all__ = ["MISLEADING_FACTOR", "Outcome", "Record", "Run", "measure"]
+__all__ = ["MISLEADING_FACTOR", "Outcome", "Record", "Run", "Timed", "measure", "timed"]
+
+Result = TypeVar("Result")
 
 MISLEADING_FACTOR = 2.0  # a number further off than this is no estimate of the reference, whatever it bounds
 
@@ -57,6 +60,29 @@ class Record:
     sentence: str
 
 
+@dataclass(frozen=True, kw_only=True)
+class Timed(Generic[Result]):
+    """What a run returned first, and its wall times: of that run, and the median of the warm ones after it."""
+
+    result: Result
+    first_seconds: float
+    seconds: float
+
+
+def timed(
+    run: Callable[[], Result],
+    *,
+    repetitions: int = 3,
+    patience: float = 1.0,
+    clock: Callable[[], float] = time.perf_counter,
+) -> Timed[Result]:
+    """Run once cold, then warm: `repetitions` times, or until `patience` seconds are spent, but once at least."""
+    start = clock()
+    result = run()
+    first = clock() - start
+    return Timed(result=result, first_seconds=first, seconds=_warm_runs(run, repetitions, patience, clock))
+
+
 def measure(
     problem: str,
     method: str,
@@ -68,7 +94,7 @@ def measure(
     patience: float = 1.0,
     clock: Callable[[], float] = time.perf_counter,
 ) -> Record:
-    """Run a method once cold, then warm: `repetitions` times, or until `patience` seconds are spent, but once at least.
+    """Time a method as `timed` does, and compare its number with the reference.
 
     An ArithmeticError or a ValueError of the run becomes a failed record with its message: a chart shows it.
     Raises ValueError unless the reference is positive and finite.
@@ -77,9 +103,8 @@ def measure(
         raise ValueError(f"{problem}: the reference {reference} must be positive for errors to be relative to it")
     start = clock()
     try:
-        found = run()
-        first = clock() - start
-        warm = _warm_runs(run, repetitions, patience, clock)
+        timing = timed(run, repetitions=repetitions, patience=patience, clock=clock)
+        found, first, warm = timing.result, timing.first_seconds, timing.seconds
         outcome = _judge(found.value, reference)
     except (ArithmeticError, ValueError) as error:
         found = Run(value=math.nan, evaluations=0, sentence=str(error))
@@ -91,7 +116,7 @@ def measure(
     )  # fmt: skip
 
 
-def _warm_runs(run: Callable[[], Run], repetitions: int, patience: float, clock: Callable[[], float]) -> float:
+def _warm_runs(run: Callable[[], object], repetitions: int, patience: float, clock: Callable[[], float]) -> float:
     seconds: list[float] = []
     while not seconds or (len(seconds) < repetitions and sum(seconds) < patience):
         start = clock()
