@@ -162,6 +162,18 @@ def test_d_H_is_that_of_the_wrong_side_until_eps_resolves_the_gap(fail):
         assert np.all(above[i][eps < np.sqrt(own) / 10] < 3.0 * eps[eps < np.sqrt(own) / 10])
 
 
+def test_at_isolated_states_the_excess_of_A_is_proved_large_only_once_eps_resolves_the_gap(fail):
+    dataset = load(fail[1] / "near_critical.h5").isel(case=1)
+    gap, eps, half = dataset["gap"].values, dataset["eps"].values, dataset["half_jump"].values
+    for i in np.flatnonzero(gap > 0.0):
+        one = dataset.isel(value=i)
+        lower, upper = one["excess_A_Aeps_lower"].values, one["excess_A_Aeps_upper"].values
+        assert np.all(lower <= upper)
+        assert np.all(lower[eps < 0.1 * gap[i]] > 0.9 * half[i])
+        # the third derivative of mu_c, 75/2, makes gamma positive further than about 2 gap/3 from arctan 2
+        assert np.all(lower[eps > 2.0 * gap[i]] < 0.9 * half[i])
+
+
 def test_advice_is_the_fastest_run_that_is_good_enough(fail):
     for row in fail[0].data["methods"]:
         assert row["number"]["error"] <= 1e-2

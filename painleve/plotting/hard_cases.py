@@ -15,6 +15,7 @@ RADIUS = "radius $\\varepsilon$ of the balls"
 COLOURS = (PALETTE["sky"], PALETTE["orange"], PALETTE["blue"], PALETTE["purple"])
 LINES = ("-", "--", "-.", ":")
 SLIPS = ("slip_plus", "slip_minus")
+ENCLOSED = 0.999  # of what is read: there e(A, A_eps) is bounded from below too
 SMALLEST, LARGEST = 1e-17, 1e2  # relative errors that are shown; an error of 100 or of 1e17 says the same
 
 
@@ -84,13 +85,13 @@ def _draw_slips(axis: Axes, dataset: xr.Dataset) -> None:
     eps, names = dataset["eps"].values, list(dataset["law_branch"].values)
     slips = [names.index(name) for name in SLIPS]
     total = int(np.maximum(dataset["counts"].values, 0)[0, 0].sum())
-    styles = {"plain": (PALETTE["vermilion"], "D"), "taylor": (PALETTE["green"], "^")}
+    styles = {"plain": (PALETTE["vermilion"], "D", "white", 7.0), "taylor": (PALETTE["green"], "^", None, 4.0)}
     for i, arithmetic in enumerate(dataset["arithmetic"].values):
         counts = dataset["counts"].transpose("arithmetic", "eps", "law_branch").values[i][:, slips].sum(axis=1)
-        colour, marker = styles[str(arithmetic)]
-        name = "plain" if arithmetic == "plain" else "cancellation-free"
-        axis.plot(eps, np.where(counts > 0, counts, np.nan), color=colour, marker=marker,
-                  linestyle="-" if arithmetic == "plain" else "--", label=f"{name}: samples that slip")  # fmt: skip
+        colour, marker, fill, size = styles[str(arithmetic)]
+        name, line = ("plain", "-") if arithmetic == "plain" else ("cancellation-free", "--")
+        axis.plot(eps, np.where(counts > 0, counts, np.nan), color=colour, marker=marker, markersize=size,
+                  markerfacecolor=fill or colour, linestyle=line, label=f"{name}: samples that slip")  # fmt: skip
     axis.set_ylabel(f"samples that slip, of {_power(total)}")
 
 
@@ -108,8 +109,9 @@ def draw_near_critical(dataset: xr.Dataset) -> Figure:
         axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=2)
     figure.supylabel(with_unit("$d_H(A, A_\\varepsilon)$ as read", dataset["excess_Aeps_A_lower"]), fontsize=8)
     forward, backward = "$e(A_\\varepsilon, A)$", "$e(A, A_\\varepsilon)$"
-    figure.suptitle(f"▲ the lower bound on {forward} decides, ▼ the upper bound on {backward}; filled above the "
-                    "critical value, hollow below", fontsize=7.5)  # fmt: skip
+    figure.suptitle(f"▲ the lower bound on {forward} decides, ▼ the upper bound on {backward}; filled above the\n"
+                    f"critical value, hollow below; black dot: {backward} is bounded from below too",
+                    fontsize=7.5)  # fmt: skip
     return figure
 
 
@@ -134,6 +136,8 @@ def _draw_side(axis: Axes, one: xr.Dataset, colour: str, line: str) -> None:
     axis.plot(eps, value, color=colour, linestyle=line, linewidth=0.8, zorder=1)
     for chosen, marker in ((forward, "^"), (~forward, "v")):
         axis.plot(eps[chosen], value[chosen], linestyle="none", marker=marker, color=colour, markerfacecolor=fill)
+    enclosed = one["excess_A_Aeps_lower"].values > ENCLOSED * value
+    axis.plot(eps[enclosed], value[enclosed], linestyle="none", marker=".", color="black", markersize=2.5, zorder=4)
     axis.plot([], [], color=colour, linestyle=line, marker="^", markerfacecolor=fill, label=label)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -11,12 +12,11 @@ import xarray as xr
 from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.methods import distance
 from painleve.asymptotics.sample import check_eps
-from painleve.asymptotics.theorem import classify
+from painleve.asymptotics.theorem import Branch, classify
 from painleve.errors import InputError
 from painleve.kernels.compiled import make_kernels
 from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import Number, make_state
-from painleve.sets import Bounds
 from painleve.store import provenance
 from painleve.sweep.variables import BRANCHES, ball_unit, code, coded, text, velocity_unit
 
@@ -47,18 +47,21 @@ def sweep_near_critical(
     *,
     eps: Sequence[float],
     methods: Mapping[str, object],
+    isolated: Mapping[str, object],
     progress: Callable[[str], None] | None = None,
     command: str | None = None,
 ) -> xr.Dataset:
     """Bounds on both excesses, each against the exact A of its own side: the tightest of the methods named.
 
-    `methods` maps names to options; a bound is true whichever method gave it. All cases need as many exponents.
+    `methods` maps names to options; a bound is true whichever method gave it. At isolated critical states those of
+    `isolated` run too: only an enclosure tells whether e(A, A_eps) is large there or its upper bound is loose.
+    All cases need as many exponents.
     Raises InputError for no cases, bad eps and states that do not exist.
     """
     radii = [check_eps(value) for value in eps]
     if not (cases and radii and methods) or len({len(case.exponents) for case in cases}) != 1:
         raise InputError("near a critical value: give eps, methods, and cases with equally many exponents")
-    parts = [_case(case, radii, methods, progress) for case in cases]
+    parts = [_case(case, radii, methods, isolated, progress) for case in cases]
     dataset = xr.concat(parts, "case")
     scenes = list(dict.fromkeys(case.scene for case in cases))
     source = provenance(
@@ -73,20 +76,20 @@ def sweep_near_critical(
 
 
 def _case(
-    case: NearCase, radii: Sequence[float], methods: Mapping[str, object], progress: Callable[[str], None] | None
-) -> xr.Dataset:
+    case: NearCase, radii: Sequence[float], methods: Mapping[str, object], isolated: Mapping[str, object],
+    progress: Callable[[str], None] | None,
+) -> xr.Dataset:  # fmt: skip
     gaps, exact = zip(*case.values(), strict=True)
     classified = [
         classify(make_state(case.scene, keys=case.keys, parameters={case.parameter: value})) for value in exact
     ]
-    lower, upper = (np.empty((len(gaps), len(radii))) for _ in range(2))
+    forward, lower, upper = (np.empty((len(gaps), len(radii))) for _ in range(3))
     for i, classification in enumerate(classified):
+        chosen = {**methods, **(isolated if classification.branch is Branch.CRITICAL_ISOLATED else {})}
         for j, radius in enumerate(radii):
             if progress is not None:
                 progress(f"{case.parameter} = {exact[i]} at eps = {radius:g}")
-            forward, backward = _tightest(classification.limit, radius, methods)
-            lower[i, j] = np.nan if forward.lower is None else forward.lower
-            upper[i, j] = np.nan if backward.upper is None else backward.upper
+            forward[i, j], lower[i, j], upper[i, j] = _tightest(classification.limit, radius, chosen)
     unit = velocity_unit(case.scene)
 
     def number(dims: tuple[str, ...], values: np.ndarray, sentence: str, units: str) -> xr.Variable:
@@ -95,7 +98,8 @@ def _case(
     codes = np.array([code(c.branch.value, BRANCHES) for c in classified])
     jumps = np.array([np.linalg.norm(c.limit.jump) for c in classified])
     return xr.Dataset({
-        "excess_Aeps_A_lower": number(("value", "eps"), lower, "largest lower bound on e(A_eps, A)", unit),
+        "excess_Aeps_A_lower": number(("value", "eps"), forward, "largest lower bound on e(A_eps, A)", unit),
+        "excess_A_Aeps_lower": number(("value", "eps"), lower, "largest lower bound on e(A, A_eps); NaN: none", unit),
         "excess_A_Aeps_upper": number(("value", "eps"), upper, "least upper bound on e(A, A_eps)", unit),
         "gap": number(("value",), np.array(gaps), "relative distance of the parameter to its critical value", "1"),
         "half_jump": number(("value",), jumps / 2.0, "half the distance between u- and u_tilde", unit),
@@ -106,12 +110,12 @@ def _case(
     })  # fmt: skip
 
 
-def _tightest(limit: LimitSet, eps: float, methods: Mapping[str, object]) -> tuple[Bounds, Bounds]:
-    """(e(A_eps, A) from below, e(A, A_eps) from above), the best of the methods."""
+def _tightest(limit: LimitSet, eps: float, methods: Mapping[str, object]) -> tuple[float, float, float]:
+    """e(A_eps, A) from below, e(A, A_eps) from below and from above: the best of the methods; NaN where none tells."""
     found = [distance(limit, eps, name, options) for name, options in methods.items()]
-    lowers = [f.excess_Aeps_A.bounds.lower for f in found]
-    uppers = [f.excess_A_Aeps.bounds.upper for f in found]
+    forward, backward = [f.excess_Aeps_A.bounds for f in found], [f.excess_A_Aeps.bounds for f in found]
     return (
-        Bounds(lower=max((x for x in lowers if x is not None), default=None), upper=None),
-        Bounds(lower=None, upper=min((x for x in uppers if x is not None), default=None)),
+        max((b.lower for b in forward if b.lower is not None), default=math.nan),
+        max((b.lower for b in backward if b.lower is not None), default=math.nan),
+        min((b.upper for b in backward if b.upper is not None), default=math.nan),
     )
