@@ -125,10 +125,12 @@ def step(scheme, theta, tolerance, t, h, q, u, p):
 
 
 @jit
-def failure_of(branch, rows, u1):
+def failure_of(branch, rows, q1, u1):
     """The ending that a step calls for; REACHED_END if none."""
     if branch < 0:
         return NOT_CONVERGED
+    if not size_of(q1) < math.inf:
+        return NOT_FINITE
     if size_of(u1) < math.inf:
         return REACHED_END
     return NOT_FINITE if rows[1 + 2 * D] > 0.0 else DEGENERATE
@@ -170,7 +172,7 @@ def run(scheme, theta, tolerance, since, t, h, p, q, u, r, branch, change, sever
     q0, u0 = load(q, 0), load(u, 0)
     for i in range(h.size):
         q1, u1, v_n, r_n, r_t, code, rows, acceleration, v = step(scheme, theta, tolerance, t[i], h[i], q0, u0, p)
-        ending = failure_of(code, rows, u1)
+        ending = failure_of(code, rows, q1, u1)
         if ending != REACHED_END:
             return i, ending, since
         since += 1
@@ -206,7 +208,7 @@ def run_member(scheme, theta, tolerance, rounding, t0, h, until, q, u, p):
     for i in range(steps):
         q1, u1, v_n, r_n, r_t, code, rows, acceleration, v = step(scheme, theta, tolerance, t0 + i * h, h, q, u, p)
         now, since = t0 + (i + 1) * h, since + 1
-        if failure_of(code, rows, u1) != REACHED_END:
+        if failure_of(code, rows, q1, u1) != REACHED_END:
             return FAILED, now, i + 1
         if code != FREE:
             change = change_at(h, since, q1, u, p, rows, acceleration, v, v_n, r_n, r_t, code)
