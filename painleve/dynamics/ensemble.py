@@ -80,14 +80,14 @@ class Ensemble:
         return max(0.0, (centre - half) / (1.0 + z2 / n)), min(1.0, (centre + half) / (1.0 + z2 / n))
 
     def as_dict(self) -> dict[str, object]:
-        outcomes = [o for o in self.counts if self.counts[o]]
+        """Facts for machines: every outcome is listed, those that no member had with the fraction 0."""
         times = self.jump_time and dict(zip(("min", "median", "max"), self.jump_time, strict=True))
         return {
             "status": self.ending.label,
             "ending": self.ending.sentence,
             "count": self.count,
-            "fractions": {o.label: self.fraction(o) for o in outcomes},
-            "intervals": {o.label: list(self.interval(o)) for o in outcomes},
+            "fractions": {o.label: self.fraction(o) for o in self.counts},
+            "intervals": {o.label: list(self.interval(o)) for o in self.counts},
             "jump_time": times and {**times, "resolution": self.resolution},
             "steps": self.steps,
             "settings": dict(self.settings),

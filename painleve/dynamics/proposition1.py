@@ -39,10 +39,13 @@ class Proposition1:
         index = int(np.argmax(values))
         return float(values[index]), index + 1
 
-    def as_dict(self) -> dict[str, object]:
-        """{name: {"worst": margin, "step": index}}."""
-        pairs = {name: self.worst(name) for name in MARGINS}
-        return {name: {"worst": value, "step": step} for name, (value, step) in pairs.items()}
+    def as_dict(self) -> dict[str, float]:
+        """{name: the worst margin}."""
+        return {name: self.worst(name)[0] for name in MARGINS}
+
+    def steps(self) -> dict[str, int]:
+        """{name: the step with the worst margin}."""
+        return {name: self.worst(name)[1] for name in MARGINS}
 
 
 def check_proposition1(

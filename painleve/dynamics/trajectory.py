@@ -9,21 +9,12 @@ from functools import cached_property
 import numpy as np
 import xarray as xr
 
-from painleve.core.codes import Branch
 from painleve.core.motion_codes import Change, Ending
 from painleve.dynamics.proposition1 import Proposition1
+from painleve.dynamics.record import record
 from painleve.dynamics.start import Start
 
 __all__ = ["Jump", "Trajectory"]
-
-PER_STATE = {
-    "g": ("constraint g(q), admissible where negative", "1"),
-    "gamma": ("gamma(q): negative where the law is discontinuous at a tangential contact", "1"),
-    "v_n": ("normal velocity of the contact point, w_n . u", "1"),
-    "v_t": ("tangential velocity of the contact point, H . u", "1"),
-    "kinetic_energy": ("kinetic energy u . M u / 2", "J"),
-}
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Jump:
@@ -101,59 +92,51 @@ class Trajectory:
         normal = rows[:, 1 : 1 + d]
         edge = np.minimum(rows[:, 2 + 2 * d], rows[:, 5 + 4 * d]) if planar else rows[:, 1 + 2 * d]
         tangent = rows[:, 3 + 2 * d : 3 + 3 * d] if planar else np.zeros_like(normal)
-        energy = np.einsum("ni,nij,nj->n", self.u, M, self.u) / 2.0
-        values = (rows[:, 0], edge / (normal**2).sum(axis=1), (normal * self.u).sum(axis=1),
-                  (tangent * self.u).sum(axis=1), energy)  # fmt: skip
-        return dict(zip(PER_STATE, values, strict=True))
+        return {
+            "g": rows[:, 0],
+            "gamma": edge / (normal**2).sum(axis=1),
+            "v_n": (normal * self.u).sum(axis=1),
+            "v_t": (tangent * self.u).sum(axis=1),
+            "kinetic_energy": np.einsum("ni,nij,nj->n", self.u, M, self.u) / 2.0,
+        }
+
+    def contact_work(self) -> np.ndarray:
+        """Work of the contact impulses since the start (n,): r . (u- + u+)/2, summed over the steps, u+ - u- = M^-1 r.
+
+        Of a jump it is the change of the kinetic energy; of a force that lasts over a recorded step it is an estimate
+        of first order in that step. It is negative where the contact takes energy.
+        """
+        d, h = self.start.scene.dimension, np.diff(self.t, prepend=self.t[:1])
+        rows, _, _ = self.start.tabulate(self.t, self.q - self.lag * h[:, None] * self.u, self.u)
+        r_n, r_t = self.r[:, :1], self.r[:, 1:]
+        impulse, response = r_n * rows[:, 1 : 1 + d], r_n * rows[:, 1 + d : 1 + 2 * d]
+        if self.start.motion.planar:
+            impulse += r_t * rows[:, 3 + 2 * d : 3 + 3 * d]
+            response += r_t * rows[:, 3 + 3 * d : 3 + 4 * d]
+        return np.cumsum((impulse * (self.u - response / 2.0)).sum(axis=1))
 
     def as_dict(self) -> dict[str, object]:
-        names = [c.name for c in self.start.scene.coordinates]
+        """Facts for machines; q and u are in the order of `coordinates`."""
+        margins = self.proposition1
         return {
             "status": self.ending.label,
             "ending": self.sentence,
             "steps": self.steps,
             "jumps": [jump.as_dict() for jump in self.jumps],
-            "final": {
-                "t": float(self.t[-1]),
-                "q": dict(zip(names, map(float, self.q[-1]), strict=True)),
-                "u": dict(zip(names, map(float, self.u[-1]), strict=True)),
-            },
-            "proposition1": None if self.proposition1 is None else self.proposition1.as_dict(),
+            "coordinates": [c.name for c in self.start.scene.coordinates],
+            "final": {"t": float(self.t[-1]), "q": self.q[-1].tolist(), "u": self.u[-1].tolist()},
+            "proposition1": margins and margins.as_dict(),
+            "proposition1_steps": margins and margins.steps(),
             "statistics": dict(self.statistics),
             "settings": dict(self.settings),
         }
 
     def to_xarray(self) -> xr.Dataset:
-        """The trajectory with units and sentences; one variable a coordinate, since their units differ."""
-        scene = self.start.scene
-        data: dict[str, tuple[str, np.ndarray, dict[str, object]]] = {}
-        for j, c in enumerate(scene.coordinates):
-            rate = "1/s" if c.unit == "1" else f"{c.unit}/s"
-            data[c.name] = ("time", self.q[:, j], {"units": c.unit, "long_name": c.sentence})
-            data[f"u_{c.name}"] = ("time", self.u[:, j], {"units": rate, "long_name": f"velocity of: {c.sentence}"})
-        for j, side in enumerate(("normal", "tangential")):
-            sentence = f"{side} contact impulse of the step that ends here"
-            data[f"r_{side[0]}"] = ("time", self.r[:, j], {"units": "N s", "long_name": sentence})
-        data["branch"] = ("time", self.branch, _flags("branch of the contact law", Branch))
-        data["change"] = ("time", self.change, _flags("change of the velocity at the contact", Change))
-        for name, values in self.contact_quantities().items():
-            sentence, unit = PER_STATE[name]
-            data[name] = ("time", values, {"units": unit, "long_name": sentence})
-        time = ("time", self.t, {"units": "s", "long_name": "time"})
-        attributes = {"scene": scene.name, "start": self.start.label, "scheme": self.scheme, "ending": self.sentence}
-        return xr.Dataset(data, coords={"time": time}, attrs=attributes)
+        """The trajectory with units and sentences, and the outline of the body where the scene has one."""
+        return record(self)
 
 
 def gamma_of(rows: tuple[float, ...], d: int, planar: bool) -> float:
     """gamma from the rows at a configuration (the project's notes, section 1)."""
     edge = min(rows[2 + 2 * d], rows[5 + 4 * d]) if planar else rows[1 + 2 * d]
     return float(edge / sum(w * w for w in rows[1 : 1 + d]))
-
-
-def _flags(sentence: str, codes: type[Branch] | type[Change]) -> dict[str, object]:
-    """CF attributes of a coded variable."""
-    return {
-        "long_name": sentence,
-        "flag_values": np.array([int(c) for c in codes], np.int8),
-        "flag_meanings": " ".join(c.label for c in codes),
-    }

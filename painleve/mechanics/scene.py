@@ -14,7 +14,7 @@ import sympy as sp
 
 from painleve.errors import InputError
 
-__all__ = ["Coordinate", "NamedState", "Parameter", "Scene", "Segment", "StateKey", "make_scene"]
+__all__ = ["Coordinate", "NamedState", "Outline", "Parameter", "Scene", "Segment", "StateKey", "make_scene"]
 
 Range = Literal["positive", "nonnegative", "real"]
 
@@ -91,6 +91,23 @@ class Segment:
             object.__setattr__(self, end, sp.sympify(getattr(self, end), strict=True))
 
 
+@dataclass(frozen=True, kw_only=True)
+class Outline:
+    """What a picture of the body needs, in metres: a polyline of points (x, y), and the height of the floor below it.
+
+    Points are expressions in the coordinates and the parameters, the height in the parameters alone. A scene with an
+    outline has minus the height of the contact point over that floor as its g.
+    """
+
+    points: tuple[tuple[sp.Expr, sp.Expr], ...]
+    floor: sp.Expr
+
+    def __post_init__(self) -> None:
+        points = tuple((sp.sympify(x, strict=True), sp.sympify(y, strict=True)) for x, y in self.points)
+        object.__setattr__(self, "points", points)
+        object.__setattr__(self, "floor", sp.sympify(self.floor, strict=True))
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Scene:
     """A mechanical scene; build it with `make_scene`, which checks it.
@@ -115,6 +132,7 @@ class Scene:
     velocity: Mapping[str, sp.Expr]
     contact_parameters: Mapping[str, sp.Expr]
     states: tuple[NamedState, ...] = field(default=())
+    outline: Outline | None = None
 
     @property
     def q(self) -> tuple[sp.Symbol, ...]:
@@ -171,6 +189,7 @@ def make_scene(
     velocity: Mapping[str, sp.Expr] | None = None,
     contact_parameters: Mapping[str, sp.Expr] | None = None,
     states: Iterable[NamedState] = (),
+    outline: Outline | None = None,
 ) -> Scene:
     """Check a scene and derive M, f and H from what describes it.
 
@@ -199,6 +218,9 @@ def make_scene(
     _check_symbols(name, "H", H, [*q, *p])
     if friction is not None:
         _check_symbols(name, "the friction section", sp.Matrix([friction.minus, friction.plus]), [*q, *p])
+    if outline is not None:
+        _check_symbols(name, "the outline", sp.Matrix(outline.points), [*q, *p])
+        _check_symbols(name, "the floor of the outline", sp.Matrix([outline.floor]), p)
     if all(sp.diff(constraint, x) == 0 for x in q):
         raise InputError(f"scene {name}: g does not depend on any coordinate; give a constraint g(q) <= 0")
     given = [*(k.symbol for k in keys), *p]
@@ -211,7 +233,7 @@ def make_scene(
         name=name, sentence=sentence, source=source, coordinates=coordinates, parameters=parameters, inertia=M,
         force=f, constraint=constraint, tangents=H, friction=friction, keys=keys,
         placement=MappingProxyType(dict(rules[0])), velocity=MappingProxyType(dict(rules[1])),
-        contact_parameters=MappingProxyType(dict(rules[2])), states=states,
+        contact_parameters=MappingProxyType(dict(rules[2])), states=states, outline=outline,
     )  # fmt: skip
 
 

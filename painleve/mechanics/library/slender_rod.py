@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from painleve.mechanics.scene import Coordinate, NamedState, Parameter, Scene, Segment, StateKey, make_scene
+from painleve.mechanics.scene import Coordinate, NamedState, Outline, Parameter, Scene, Segment, StateKey, make_scene
 
 SOURCE = "P. Painlevé, C. R. Acad. Sci. Paris 121 (1895) 112-115; L. Paoli, IFIP AICT 494 (2016), section 1"
 
@@ -35,6 +35,7 @@ def make_rod(
     m, l, I, gravity = (p.symbol for p in (*BODY, GRAVITY))  # noqa: E741 (the field's letters)
     slip, omega = KEYS[1].symbol, KEYS[2].symbol
     u_x, u_y, u_theta = (c.velocity for c in COORDINATES)
+    half = (l * sp.cos(theta), l * sp.sin(theta))
     return make_scene(
         name=name,
         sentence=sentence,
@@ -51,6 +52,7 @@ def make_rod(
         # With a spin the centre moves so that the tip's normal velocity is zero.
         velocity={"x": slip - l * omega * sp.sin(theta), "y": l * omega * sp.cos(theta), "theta": omega},
         states=states,
+        outline=Outline(points=((x - half[0], y - half[1]), (x + half[0], y + half[1])), floor=sp.Integer(0)),
     )
 
 

@@ -7,7 +7,7 @@ condition that mu_c is stationary along the table is then a quadratic equation f
 
 import sympy as sp
 
-from painleve.mechanics.scene import Coordinate, NamedState, Parameter, Segment, StateKey, make_scene
+from painleve.mechanics.scene import Coordinate, NamedState, Outline, Parameter, Segment, StateKey, make_scene
 
 COORDINATES = (
     Coordinate(name="phi1", unit="rad", sentence="angle of the first link from the downward vertical",
@@ -38,6 +38,9 @@ cos_elbow = sp.cos(phi1) * sp.cos(phi2) + sp.sin(phi1) * sp.sin(phi2)
 sin_elbow = sp.sin(phi2) * sp.cos(phi1) - sp.cos(phi2) * sp.sin(phi1)
 first_link = m1 * (l1 * u1) ** 2 / 6
 second_link = m2 * ((l1 * u1) ** 2 + l1 * l2 * u1 * u2 * cos_elbow + (l2 * u2) ** 2 / 3) / 2
+
+elbow = (l1 * sp.sin(phi1), -l1 * sp.cos(phi1))
+tip = (elbow[0] + l2 * sp.sin(phi2), elbow[1] - l2 * sp.cos(phi2))
 
 # tan(phi1/2) = -1/12, tan(phi2/2) = 1/7: a local maximum of mu_c along the table
 MAXIMUM = {"phi1": "-atan(24/143)", "phi2": "atan(7/24)", "slip": "1577*sqrt(55609)/278045"}
@@ -70,6 +73,7 @@ SCENE = make_scene(
         "phi2": -slip * sp.sin(phi1) / (l2 * sin_elbow),
     },
     contact_parameters={"depth": l1 * sp.cos(phi1) + l2 * sp.cos(phi2)},
+    outline=Outline(points=((sp.Integer(0), sp.Integer(0)), elbow, tip), floor=-depth),
     states=(
         NamedState(name="sliding", sentence="gamma > 0: ordinary sliding, nothing is indeterminate",
                    keys=MAXIMUM, parameters={"mu": "1/2"}),
