@@ -6,7 +6,7 @@ import argparse
 from typing import Any
 
 from painleve.cli.common import add_command, add_json, count, print_json, real
-from painleve.cli.motion import add_motion, read_start
+from painleve.cli.motion import add_motion, read_options, read_start
 
 
 def register(commands: Any) -> None:
@@ -34,7 +34,8 @@ def run(options: argparse.Namespace) -> int:
         found = run_ensemble(
             read_start(options), scheme=options.scheme, step=options.step, until=options.until, count=options.count,
             spread=options.spread, window=options.window, ball=options.ball, seed=options.seed,
-            threads=options.threads, contact_tolerance=options.contact_tolerance, progress=bar.update,
+            threads=options.threads, contact_tolerance=options.contact_tolerance, options=read_options(options),
+            progress=bar.update,
         )  # fmt: skip
     facts = found.as_dict()
     if options.json:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from painleve.dynamics.start import Start
     from painleve.mechanics.state import State
 
-__all__ = ["add_motion", "read_start"]
+__all__ = ["add_motion", "read_options", "read_start"]
 
 
 def add_motion(parser: argparse.ArgumentParser) -> None:
@@ -24,6 +24,8 @@ def add_motion(parser: argparse.ArgumentParser) -> None:
         )
     parser.add_argument("--scheme", default="contact_dynamics", metavar="NAME", help="default contact_dynamics, "
                         "the paper's; a wrong name lists them all")  # fmt: skip
+    parser.add_argument("--option", nargs="+", action="extend", default=[], metavar="NAME=NUMBER",
+                        dest="scheme_options", help="options of the scheme, such as theta=1/2")  # fmt: skip
     parser.add_argument("--contact-tolerance", type=real, default=0.0, metavar="D", help="contact where g >= -D "
                         "(default 0, the paper's strict test)")  # fmt: skip
     parser.add_argument("--step", type=real, required=True, metavar="H", help="step size [s]")
@@ -41,3 +43,11 @@ def read_start(options: argparse.Namespace) -> Start | State:
         raise InputError("--state and --q/--u are two ways to give a start; use one")
     q, u = assignments(options.q, "--q"), assignments(options.u, "--u")
     return make_start(load_scene(options.scene), q=q, u=u, parameters=assignments(options.parameters, "--set"))
+
+
+def read_options(options: argparse.Namespace) -> dict[str, float]:
+    """The scheme's options as floats."""
+    from painleve.mechanics.parse import exact_number
+
+    given = assignments(options.scheme_options, "--option")
+    return {name: float(exact_number(value, where=f"--option {name}")) for name, value in given.items()}

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from painleve.cli.common import add_command, add_json, print_json
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def register(commands: Any) -> None:
@@ -16,8 +19,10 @@ def register(commands: Any) -> None:
     )  # fmt: skip
     parser.add_argument("file", type=Path, metavar="FILE", help="the HDF5 file")
     parser.add_argument(
-        "-o", "--output", type=Path, metavar="FIGURE", help="a .pdf, .png or .svg file (default: FILE with .png)"
-    )
+        "-o", "--output", type=Path, metavar="FIGURE",
+        help="a .pdf, .png or .svg file (default: FILE with .png); with --animate a .gif",
+    )  # fmt: skip
+    parser.add_argument("--animate", action="store_true", help="write the motion of a trajectory as a .gif")
     add_json(parser)
 
 
@@ -25,10 +30,20 @@ def run(options: argparse.Namespace) -> int:
     from painleve.plotting import draw, save_figure
     from painleve.store import check_writable, load
 
-    target = check_writable(options.output or options.file.with_suffix(".png"))
-    written = save_figure(draw(load(options.file)), target)
+    target = check_writable(options.output or options.file.with_suffix(".gif" if options.animate else ".png"))
+    dataset = load(options.file)
+    written = _animate(dataset, target) if options.animate else save_figure(draw(dataset), target)
     if options.json:
         print_json({"file": str(written)})
     else:
         print(written)
     return 0
+
+
+def _animate(dataset: xr.Dataset, target: Path) -> Path:
+    from tqdm import tqdm
+
+    from painleve.plotting.animation import animate
+
+    with tqdm(unit=" frames", leave=False, delay=1.0, disable=None) as bar:
+        return animate(dataset, target, progress=bar.update)

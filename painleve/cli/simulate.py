@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from painleve.cli.common import add_command, add_json, print_json
-from painleve.cli.motion import add_motion, read_start
+from painleve.cli.motion import add_motion, read_options, read_start
+from painleve.errors import InputError
 
 if TYPE_CHECKING:
     from painleve.dynamics.trajectory import Trajectory
@@ -24,32 +25,26 @@ def register(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
+    from painleve.core.motion_codes import Ending
     from painleve.dynamics.simulate import simulate
-    from painleve.store import check_writable
+    from painleve.store import check_writable, save
 
     target = options.output and check_writable(options.output)
     trajectory = simulate(
         read_start(options), scheme=options.scheme, step=options.step, until=options.until,
-        contact_tolerance=options.contact_tolerance,
+        contact_tolerance=options.contact_tolerance, options=read_options(options),
     )  # fmt: skip
+    if trajectory.ending is Ending.NOT_FINITE:
+        raise InputError(f"{trajectory.sentence}; after {trajectory.steps} steps, at t = {trajectory.t[-1]:.6g}")
     if target is not None:
-        _keep(trajectory, target)
+        from painleve.sweep.trajectories import trajectory_dataset
+
+        save(trajectory_dataset(trajectory), target)
     if options.json:
         print_json(trajectory.as_dict())
     else:
         _print(trajectory)
     return 0
-
-
-def _keep(trajectory: Trajectory, target: Path) -> None:
-    from painleve.kernels.compiled import make_kernels
-    from painleve.store import provenance, save
-
-    scene = trajectory.start.scene
-    dataset = trajectory.to_xarray()
-    source = provenance(scene=scene.name, scene_digest=make_kernels(scene).digest, seed=0)
-    title = f"Trajectory of {scene.name} by {trajectory.scheme}: {scene.sentence}"
-    save(dataset.assign_attrs({**source, "title": title, "kind": "trajectory"}), target)
 
 
 def _print(trajectory: Trajectory) -> None:
@@ -61,6 +56,7 @@ def _print(trajectory: Trajectory) -> None:
     for name, values in (("q", trajectory.q[-1]), ("u", trajectory.u[-1])):
         coordinates = trajectory.start.scene.coordinates
         print(f"  {name:10} " + ", ".join(f"{c.name} {x:.9g}" for c, x in zip(coordinates, values, strict=True)))
-    if trajectory.proposition1 is not None:
-        for name, margin in trajectory.proposition1.as_dict().items():
-            print(f"  {name}: {margin}")
+    margins = trajectory.proposition1
+    if margins is not None:
+        for name, margin in margins.as_dict().items():
+            print(f"  Proposition 1, {name}: worst margin {margin:.3g} at step {margins.steps()[name]}")

@@ -19,6 +19,7 @@ from painleve.plotting.members import draw_members
 from painleve.plotting.plurality import draw_jam_law, draw_step_sizes
 from painleve.plotting.regimes import draw_regimes
 from painleve.plotting.style import STYLE
+from painleve.plotting.trajectory import draw_trajectory
 from painleve.plotting.work_precision import draw_work_precision
 from painleve.store import check_writable
 
@@ -29,6 +30,7 @@ DRAWINGS: Mapping[str, Callable[[xr.Dataset], Figure]] = MappingProxyType({
     "members": draw_members,
     "gamma_map": draw_gamma_map,
     "regimes": draw_regimes,
+    "trajectory": draw_trajectory,
     "step_sizes": draw_step_sizes,
     "jam_law": draw_jam_law,
     "work_precision": draw_work_precision,
