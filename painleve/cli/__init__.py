@@ -7,12 +7,12 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from painleve.cli import classify, derive, distance, ensemble, plot, scenes, simulate, study, sweep
+from painleve.cli import classify, derive, distance, ensemble, plot, rate, scenes, simulate, study, sweep
 from painleve.errors import InputError
 
 __all__ = ["main"]
 
-COMMANDS = (scenes, derive, classify, distance, sweep, study, plot, simulate, ensemble)
+COMMANDS = (scenes, derive, classify, distance, rate, sweep, study, plot, simulate, ensemble)
 
 
 class _Parser(argparse.ArgumentParser):
