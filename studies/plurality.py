@@ -9,6 +9,10 @@ Génot-Brogliato point. A step size either jams there (a jump of the velocity wi
    matters. Derived in painleve.core.jam_map (first order in h near the point), measured here.
 3. At finite h the fraction is that of a local map with one number d ~ h^((1-r)/(1+r)), up to O(beta/c) at the last
    hops.
+4. At states with gamma < 0, known to eps, the fraction that jumps within 50 steps depends on eps/h. Where the free
+   normal acceleration is negative (inconsistent) everything jumps for small eps/h; where it is positive (indeterminate)
+   nothing does; for large eps/h both ends of A are approached. Measured.
+5. Which limit other schemes and the compliant contact choose there. Measured.
 
 Command:  painleve study plurality [--quick]
 Expected: fractions of both outcomes in each decade; fractions that agree with the map, and tend to the law.
@@ -34,9 +38,15 @@ from painleve.plotting import draw, save_figure
 from painleve.plotting.style import labels_of
 from painleve.store import check_writable, save
 from painleve.sweep import StudyResult
+from painleve.sweep.initial_layer import sweep_initial_layer
 from painleve.sweep.jam_law import JamCase, measure_jam_law
+from painleve.sweep.scheme_choice import SchemeRun, sweep_schemes
 from painleve.sweep.step_sizes import StepWindow, sweep_step_sizes
 
+PARADOX = {"inconsistent": "0", "indeterminate": "6"}  # omega (rad/s) of the state `paradox`: beta < 0, beta > 0
+SCHEMES = ("contact_dynamics", "moreau_jean", "stewart_trinkle", "anitescu_potra", "schatzman_paoli")
+LAYER = 0.05  # s: how long the schemes are followed at these states
+AFTER = 0.86  # s: and on Glocker's rod
 UNTIL = 1.0  # s: Glocker's rod reaches the point at 0.81 s
 COUNTS = {1e-3: 4000, 1e-4: 4000, 1e-5: 1200, 1e-6: 400, 1e-7: 200}  # step sizes in the decade from the key on
 NARROW = np.linspace(0.95e-3, 1.05e-3, 12)  # where narrow windows begin
@@ -51,14 +61,40 @@ def run(output: Path, *, quick: bool = False, seed: int = 0) -> StudyResult:
     check_writable(output / "jam_law.h5")
     windows, cases = list(_windows(quick=quick)), list(_cases(quick=quick))
     state = make_state(load_scene("slender_rod"), "stoss")
-    total = 2 * len(windows) + len(cases)
+    paradoxes = {
+        label: make_state(load_scene("slender_rod"), "paradox", keys={"omega": omega})
+        for label, omega in PARADOX.items()
+    }
+    runs = list(_runs(quick=quick))
+    layer = {
+        "steps": (1e-3, 1e-5) if quick else (1e-3, 1e-4, 1e-5),
+        "ratios": np.logspace(-1, 3, 5 if quick else 9),
+        "count": 100 if quick else 400,
+    }
+    followed = [(label, s, LAYER) for label, s in paradoxes.items()] + [("stoss", state, AFTER)]
+    total = 2 * len(windows) + len(cases) + 2 * len(layer["steps"]) * len(layer["ratios"]) + 3 * len(runs)
     with tqdm(total=total, leave=False, disable=None, file=sys.stderr, unit="ensemble") as bar:
         step_sizes = sweep_step_sizes(state, windows, until=UNTIL, seed=seed, progress=bar.update)
         jam_law = measure_jam_law(cases, seed=seed, progress=bar.update)
-    files = [path for stem, d in (("step_sizes", step_sizes), ("jam_law", jam_law)) for path in _keep(d, output, stem)]
+        layers = sweep_initial_layer(paradoxes, **layer, seed=seed, progress=bar.update)
+        choices = sweep_schemes(followed, runs, progress=bar.update)
+    drawn = {"step_sizes": step_sizes, "jam_law": jam_law, "initial_layer": layers}
+    files = [path for stem, dataset in drawn.items() for path in _keep(dataset, output, stem)]
+    files.append(save(choices, output / "scheme_choice.h5"))
     decades, laws, fits = list(_decade_rows(step_sizes)), list(_law_rows(jam_law)), _fits(jam_law)
-    table = "\n\n".join([_glocker_table(step_sizes, decades), _law_table(laws), _fit_text(fits)])
-    data = {"instant": float(step_sizes["instant"]), "decades": decades, "cases": laws, "fits": fits}
+    table = "\n\n".join(
+        [
+            _glocker_table(step_sizes, decades),
+            _law_table(laws),
+            _fit_text(fits),
+            _layer_table(layers),
+            _choice_table(choices),
+        ]
+    )
+    data = {
+        "choices": _choice_rows(choices), "layer": _layer_rows(layers),
+        "instant": float(step_sizes["instant"]), "decades": decades, "cases": laws, "fits": fits,
+    }  # fmt: skip
     return StudyResult(table=table, files=tuple(files), data=data, status=_status(decades, fits))
 
 
@@ -113,6 +149,61 @@ def _kept(
         group=group, contact="kept", ratio=ratio, step=step, amplitude=point.kept_drift(step, 1.0) / drift,
         alpha=alpha, length=length, **rest,  # type: ignore[arg-type]
     )  # fmt: skip
+
+
+def _runs(*, quick: bool) -> Iterator[SchemeRun]:
+    """Each scheme at several steps, event-driven integration, and compliant contact with growing stiffness."""
+    for scheme in SCHEMES:
+        for h in (1e-3, 1e-4) if quick else (1e-3, 7e-4, 1e-4, 7e-5, 1e-5, 7e-6):
+            yield SchemeRun(scheme=scheme, step=h)
+    yield SchemeRun(scheme="event_driven", step=1e-3)
+    for stiffness in (1e4, 1e6) if quick else (1e4, 1e6, 1e8, 1e10):
+        yield SchemeRun(scheme="compliant", step=1e-3, stiffness=stiffness)
+
+
+def _layer_rows(dataset: xr.Dataset) -> list[dict[str, object]]:
+    """Every point of the initial layer."""
+    rows = []
+    for i, j, k in np.ndindex(*dataset["fraction"].shape):
+        one = dataset.isel(state=i, step=j, ratio=k)
+        names = ("step", "ratio", "fraction", "lower", "upper", "excess_from_A", "excess_of_A")
+        rows.append({"state": str(one["state"].item()), **{name: float(one[name]) for name in names}})
+    return rows
+
+
+def _layer_table(dataset: xr.Dataset) -> str:
+    """Fraction that jumps, over eps/h, at the least h."""
+    h = float(dataset["step"].min())
+    lines = [("state", "eps/h", "jump (95 % interval)", "e(right velocities, A) >=", "e(A, right velocities) <=")]
+    for row in _layer_rows(dataset):
+        if row["step"] == h:
+            lines.append((
+                str(row["state"]), f"{row['ratio']:.3g}",
+                f"{row['fraction']:.3f} ({row['lower']:.3f}-{row['upper']:.3f})", f"{row['excess_from_A']:.2e}",
+                f"{row['excess_of_A']:.2e}",
+            ))  # fmt: skip
+    return f"States with gamma < 0 known to eps, h = {h:g}, right velocity after 50 steps:\n" + _aligned(lines)
+
+
+def _choice_rows(dataset: xr.Dataset) -> list[dict[str, object]]:
+    """Every run of every scheme."""
+    labels = labels_of(dataset["choice"])
+    return [
+        {
+            "state": str(state), "run": str(run), "choice": str(labels[i, j]),
+            "time": float(dataset["time"].values[i, j]),
+        }
+        for i, state in enumerate(dataset["state"].values) for j, run in enumerate(dataset["run"].values)
+    ]  # fmt: skip
+
+
+def _choice_table(dataset: xr.Dataset) -> str:
+    """A row for each run, a column for each state."""
+    labels, times = labels_of(dataset["choice"]), dataset["time"].values
+    lines = [("scheme", *map(str, dataset["state"].values))]
+    for j, run in enumerate(dataset["run"].values):
+        lines.append((str(run), *(f"{labels[i, j]} {times[i, j]:.5f}" for i in range(len(labels)))))
+    return "What happens first, and when (s):\n" + _aligned(lines)
 
 
 def _keep(dataset: xr.Dataset, output: Path, stem: str) -> list[Path]:
@@ -198,15 +289,17 @@ def _fits(dataset: xr.Dataset) -> dict[str, dict[str, float]]:
             "largest_residual_over_neglected": float((np.abs(residual) / one["neglected"].values[inside]).max()),
             "jams_where_the_map_has_none": int(np.round((f * n)[p == 0.0]).sum()),
         }  # fmt: skip
-    found["approach"] = {c: _power(dataset, c) for c in ("strict", "kept")}
+    found["approach"] = {
+        f"{c} {name}": _power(dataset, c, name) for c in ("strict", "kept") for name in ("fraction", "local_map")
+    }
     return found
 
 
-def _power(dataset: xr.Dataset, contact: str) -> float:
-    """The fitted power of h with which the measured fraction comes to the limit law on one slip."""
+def _power(dataset: xr.Dataset, contact: str, name: str) -> float:
+    """The fitted power of h with which a fraction comes to the limit law on one slip; NaN where too few differ."""
     chosen = (dataset["group"].values == "approach") & (labels_of(dataset["contact"]) == contact)
     one = dataset.isel(case=np.flatnonzero(chosen))
-    gap = np.abs(one["law"].values - one["fraction"].values)
+    gap = np.abs(one["law"].values - one[name].values)
     seen = gap > (one["upper"].values - one["lower"].values)  # twice the interval's half width
     if seen.sum() < 2:
         return float("nan")
@@ -219,13 +312,15 @@ def _fit_text(fits: dict[str, dict[str, float]]) -> str:
         fit = fits[contact]
         lines.append(
             f"  {contact}: chi-square {fit['chi_square']:.1f} on {fit['degrees']} degrees of freedom, "
-            f"p = {fit['p_value']:.2g}; largest residual {fit['largest_residual']:.3f}; where the map has no jam, "
+            f"p = {fit['p_value']:.2g}; largest residual {fit['largest_residual']:.3f}, largest in units of beta/c "
+            f"{fit['largest_residual_over_neglected']:.0f}; where the map has no jam, "
             f"{fit['jams_where_the_map_has_none']} were seen."
         )
     power = fits["approach"]
     lines.append(
-        f"Approach to the limit at r = 0.5, fitted powers of h: strict {power['strict']:.2f} (1/3 derived), "
-        f"kept {power['kept']:.2f} (1/2 derived)."
+        "Approach to the limit at r = 0.5, fitted powers of h, measured and (by the map): "
+        f"strict {power['strict fraction']:.2f} ({power['strict local_map']:.2f}; 1/3 derived for h -> 0), "
+        f"kept {power['kept fraction']:.2f} ({power['kept local_map']:.2f}; 1/2 derived for h -> 0)."
     )
     return "\n".join(lines)
 

@@ -154,7 +154,7 @@ def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyRe
     result, folder, _ = finished
     names = {path.name for path in folder.iterdir()}
     assert names == {path.name for path in result.files}
-    assert {f"{stem}.{s}" for stem in ("step_sizes", "jam_law") for s in ("h5", "pdf", "png")} <= names
+    assert {f"{stem}.{s}" for stem in ("step_sizes", "jam_law", "initial_layer") for s in ("h5", "pdf", "png")} <= names
     for path in result.files:
         if path.suffix == ".h5":
             load(path)
@@ -180,3 +180,27 @@ def test_jumps_tend_to_the_exact_instant(finished: tuple[StudyResult, Path, floa
 def test_where_the_map_has_no_jam_none_is_seen(finished: tuple[StudyResult, Path, float]) -> None:
     for contact in ("strict", "kept"):
         assert finished[0].data["fits"][contact]["jams_where_the_map_has_none"] == 0
+
+
+def test_small_errors_leave_one_end_of_A_and_large_ones_reach_both(
+    finished: tuple[StudyResult, Path, float],
+) -> None:
+    rows = {(r["state"], r["step"], r["ratio"]): r for r in finished[0].data["layer"]}
+    least, ratios = min(k[1] for k in rows), sorted({k[2] for k in rows})
+    assert rows["inconsistent", least, ratios[0]]["fraction"] == 1.0
+    assert rows["indeterminate", least, ratios[0]]["fraction"] == 0.0
+    for state in ("inconsistent", "indeterminate"):
+        last = rows[state, least, ratios[-1]]
+        assert 0.0 < last["lower"] < last["upper"] < 1.0
+        assert last["excess_of_A"] < 0.05 < 0.5 < rows[state, least, ratios[0]]["excess_of_A"]
+
+
+def test_every_scheme_jumps_at_the_inconsistent_state_and_event_driven_integration_stops(
+    finished: tuple[StudyResult, Path, float],
+) -> None:
+    choices = {(r["state"], r["run"]): r["choice"] for r in finished[0].data["choices"]}
+    for (state, run), choice in choices.items():
+        if run == "event_driven":
+            assert choice == "stops"
+        elif state == "inconsistent":
+            assert choice == "jump"

@@ -16,7 +16,7 @@ from painleve.plotting.distances import draw_distances
 from painleve.plotting.gamma_map import draw_gamma_map
 from painleve.plotting.hard_cases import draw_near_critical, draw_rounding, draw_sampled_bound
 from painleve.plotting.members import draw_members
-from painleve.plotting.plurality import draw_jam_law, draw_step_sizes
+from painleve.plotting.plurality import draw_initial_layer, draw_jam_law, draw_step_sizes
 from painleve.plotting.regimes import draw_regimes
 from painleve.plotting.style import STYLE
 from painleve.plotting.trajectory import draw_trajectory
@@ -33,6 +33,7 @@ DRAWINGS: Mapping[str, Callable[[xr.Dataset], Figure]] = MappingProxyType({
     "trajectory": draw_trajectory,
     "step_sizes": draw_step_sizes,
     "jam_law": draw_jam_law,
+    "initial_layer": draw_initial_layer,
     "work_precision": draw_work_precision,
     "sampled_bound": draw_sampled_bound,
     "rounding": draw_rounding,

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from painleve.core.jam_map import jam_fraction, limit_law
 from painleve.plotting.style import GREY, PALETTE, labels_of, legend_below, panels
 
-__all__ = ["draw_jam_law", "draw_step_sizes"]
+__all__ = ["draw_initial_layer", "draw_jam_law", "draw_step_sizes"]
 
 COLOURS = {"strict": PALETTE["vermilion"], "kept": PALETTE["blue"]}
 MARKERS = {"strict": "o", "kept": "s"}
@@ -149,3 +149,32 @@ def _draw_vanishing(axis: Axes, dataset: xr.Dataset) -> None:
     axis.set_xlabel("step size $h$ (s)")
     axis.set_ylabel("fraction that jams")
     axis.set_title("one slip, $r > 1$, strict test; dashed: map")
+
+
+def draw_initial_layer(dataset: xr.Dataset) -> Figure:
+    """For each state the fraction that jumps over eps/h, and below the two excesses between A and right velocities."""
+    count = dataset.sizes["state"]
+    figure, axes = panels(2 * count, columns=count, height=2.2)
+    for i in range(count):
+        above, below, one = axes[i], axes[count + i], dataset.isel(state=i)
+        for j, (colour, marker) in enumerate(zip(("blue", "green", "vermilion"), "os^", strict=True)):
+            if j < dataset.sizes["step"]:
+                _draw_layer(above, below, one.isel(step=j), PALETTE[colour], marker)
+        above.set_title(str(one["state"].item()))
+        above.set_ylabel("fraction that jumps")
+        below.set_ylabel(f"excess ({dataset['excess_of_A'].attrs['units']})")
+        below.set_yscale("log")
+        for axis in (above, below):
+            axis.set_xscale("log")
+            axis.set_xlabel("$\\varepsilon/h$ (1/s)")
+    legend_below(figure, axes, columns=3)
+    return figure
+
+
+def _draw_layer(above: Axes, below: Axes, one: xr.Dataset, colour: str, marker: str) -> None:
+    ratio, step = one["ratio"].values, one["step"].item()
+    _bars(above, ratio, one, color=colour, marker=marker, label=f"$h$ = {step:g} s")
+    below.plot(ratio, one["excess_from_A"], color=colour, marker="^", linestyle="none",
+               label="of right velocities from $A$, lower bound")  # fmt: skip
+    below.plot(ratio, one["excess_of_A"], color=colour, marker="v", markerfacecolor="none", linestyle="none",
+               label="of $A$ from right velocities, upper bound")  # fmt: skip
