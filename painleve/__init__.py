@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from painleve.asymptotics.limit_set import limit_set
     from painleve.asymptotics.methods import distance
     from painleve.asymptotics.optimise import OptimiseOptions
+    from painleve.asymptotics.rates import rate
     from painleve.asymptotics.sample import SampleOptions
     from painleve.asymptotics.theorem import classify, collect, judge
     from painleve.asymptotics.witness import find_family, find_witness
@@ -48,6 +49,7 @@ _HOMES = {
     "make_scene": "painleve.mechanics.scene",
     "make_start": "painleve.dynamics.start",
     "make_state": "painleve.mechanics.state",
+    "rate": "painleve.asymptotics.rates",
     "run_ensemble": "painleve.dynamics.ensemble",
     "save": "painleve.store",
     "save_figure": "painleve.plotting.draw",
@@ -75,6 +77,7 @@ __all__ = [
     "make_scene",
     "make_start",
     "make_state",
+    "rate",
     "run_ensemble",
     "save",
     "save_figure",

@@ -70,6 +70,24 @@ def test_the_hard_critical_state_is_not_misjudged_although_its_sample_sees_nothi
     assert answer["witnessed"]["upper"] < 1e-9
 
 
+@pytest.mark.parametrize("method", ["optimise", "certify"])
+@pytest.mark.parametrize(("scene", "state"), [("slender_rod", "double_zero"), ("worn_tip_rod", "isolated")])
+def test_the_rate_is_what_the_distance_divided_by_eps_tends_to(scene, state, method, capsys):
+    constant = run_json(capsys, "rate", scene, "--state", state)["C"]
+    answer = run_json(capsys, "distance", scene, "--state", state, "--eps", "1e-9", "--method", method)
+    assert answer["method"] == method
+    assert answer["excess_Aeps_A"]["lower"] / 1e-9 == pytest.approx(constant, rel=2e-6)
+    upper = answer["excess_Aeps_A"]["upper"]
+    assert upper is None if method == "optimise" else upper / 1e-9 == pytest.approx(constant, rel=2e-6)
+
+
+def test_a_certified_sweep_proves_what_a_sampled_one_leaves_consistent(tmp_path, capsys):
+    words = ["sweep", "slender_rod", "--state", "paradox", "--eps", "1e-2", "1e-4", "-o", str(tmp_path / "sweep.h5")]
+    for method, status in (("sample", "consistent"), ("certify", "proved")):
+        (verdict,) = run_json(capsys, *words, "--method", method)["verdicts"]
+        assert (verdict["branch"], verdict["status"]) == ("negative", status)
+
+
 BAD = [
     ["classify", "no_such_scene", "--state", "paradox"],
     ["classify", "slender_rod", "--state", "no_such_state"],
@@ -127,7 +145,7 @@ def test_the_error_for_a_state_off_the_constraint_says_by_how_much(capsys):
     assert f"{2 / math.sqrt(5) - 1:.6g}" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("command", ["scenes", "derive", "classify", "distance", "sweep", "study", "plot"])
+@pytest.mark.parametrize("command", ["scenes", "derive", "classify", "distance", "rate", "sweep", "study", "plot", "simulate", "ensemble"])
 def test_every_command_helps_with_an_example(command, capsys):
     with pytest.raises(SystemExit) as stopped:
         main([command, "--help"])
