@@ -76,7 +76,7 @@ def step_moreau_jean(theta, tolerance, t, h, q, u, p):
         rows, acceleration = motion_at(t + (1.0 - theta) * h, middle, mix(theta, u, previous), p)
         v = add(u, h, acceleration)
         u1, v_n, r_n, r_t, branch = solve_contact(rows[0] >= -tolerance, 0.0, rows, v)
-        if close(u1, previous, v, ACCURACY):
+        if close(u1, previous, v, 0.0):
             code = branch
             break
         previous = u1
@@ -102,7 +102,7 @@ def step_schatzman_paoli(t, h, q, u, p):
         rows = rows_at(q1, p)
         bias = -rows[0] / h - contact_velocity(rows, D, False, previous)[0]
         u1, v_n, r_n, r_t, branch = solve_contact(True, bias, rows, v)
-        if close(u1, previous, v, ACCURACY + ROUNDING / h):
+        if close(u1, previous, v, ROUNDING / h):
             code = branch
             break
         previous = u1
@@ -292,7 +292,7 @@ def _vectors(scene: Scene) -> list[str]:
         "respond(rows, r_n, r_t, v)": [f"return {each('v[{j}] + rows[{n}]*r_n' + friction)}"],
         "size_of(x)": [f"return {' + '.join(f'abs(x[{j}])' for j in d)}"],
         # Against the free velocity v too: x is v plus an impulse, and rounding in v is all that is left of x at rest.
-        "close(x, y, v, accuracy)": ["bound = accuracy*(size_of(x) + size_of(v))", f"return {near}"],
+        "close(x, y, v, noise)": ["bound = ACCURACY*(size_of(x) + size_of(v)) + noise", f"return {near}"],
         "load(x, i)": [f"return {each('x[i, {j}]')}"],
         "store(x, i, y)": [f"x[i, {j}] = y[{j}]" for j in d],
     }
