@@ -12,6 +12,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from painleve.errors import InputError
+from painleve.plotting.convergence import draw_convergence
 from painleve.plotting.distances import draw_distances
 from painleve.plotting.gamma_map import draw_gamma_map
 from painleve.plotting.hard_cases import draw_near_critical, draw_rounding, draw_sampled_bound
@@ -38,6 +39,7 @@ DRAWINGS: Mapping[str, Callable[[xr.Dataset], Figure]] = MappingProxyType({
     "sampled_bound": draw_sampled_bound,
     "rounding": draw_rounding,
     "near_critical": draw_near_critical,
+    "convergence": draw_convergence,
 })  # fmt: skip
 # Without dates, the same dataset gives the same bytes.
 WITHOUT_DATE = {"pdf": {"CreationDate": None}, "svg": {"Date": None}, "png": {}}
