@@ -145,7 +145,10 @@ def test_the_error_for_a_state_off_the_constraint_says_by_how_much(capsys):
     assert f"{2 / math.sqrt(5) - 1:.6g}" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("command", ["scenes", "derive", "classify", "distance", "rate", "sweep", "study", "plot", "simulate", "ensemble"])
+COMMANDS = ["scenes", "derive", "classify", "distance", "rate", "sweep", "study", "plot", "simulate", "ensemble"]
+
+
+@pytest.mark.parametrize("command", COMMANDS)
 def test_every_command_helps_with_an_example(command, capsys):
     with pytest.raises(SystemExit) as stopped:
         main([command, "--help"])

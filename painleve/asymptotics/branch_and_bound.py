@@ -376,7 +376,8 @@ class _Sheet:
         n = len(upper)
         if self.shape == 2:
             grid = spread.reshape(n, 2, 2, -1)
-            along, around = (np.abs(x).max(axis=(1, 2)) for x in (grid[:, 0] - grid[:, 1], grid[:, :, 0] - grid[:, :, 1]))
+            differences = (grid[:, 0] - grid[:, 1], grid[:, :, 0] - grid[:, :, 1])
+            along, around = (np.abs(x).max(axis=(1, 2)) for x in differences)
             # The polygon is longer than the box by the height of its arcs, which only narrower angles reduce.
             length = self.boxes.hi[:, 0] - self.boxes.lo[:, 0]
             half = 0.5 * (self.boxes.hi[:, 1] - self.boxes.lo[:, 1])
