@@ -28,18 +28,22 @@ Arithmetic = Literal["automatic", "taylor", "plain"]
 
 MOST_MONOMIALS = 70
 HIGHEST_ORDER = 16
-ACCURACY = 1e-14  # of the truncated expansion, relative to each row's size on the ball
+ACCURACY = 1e-14  # aimed at by the order of a row, relative to its size on the ball
+TRUSTED = 1e-10  # proved of every row, else it is evaluated plainly: wide enclosures overestimate
 BITS = 320
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Expansion:
-    """Polynomials for the varying rows: the highest of their degrees, and an estimate of the largest relative error of
-    a row on the ball, from the degrees left out."""
+    """Polynomials for the varying rows and the highest of their degrees.
+
+    remainder: a rigorous upper bound on what the polynomials leave out anywhere on the ball, for each varying row,
+    relative to that row's greatest term there (a row of zeros: absolute).
+    """
 
     order: int
     polynomials: Polynomials
-    truncation: float
+    remainder: np.ndarray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -85,19 +89,34 @@ class LocalProblem:
         return np.array([sum(powers) for powers in self.powers], dtype=int)
 
     def expansion(self, eps: float, arithmetic: Arithmetic = "automatic") -> Expansion | None:
-        """The lowest order of each row that is accurate on balls of radius eps; None: evaluate the rows plainly."""
+        """The lowest order of each row that is accurate on balls of radius eps; None: evaluate the rows plainly.
+
+        The order is chosen from the coefficients; what is then left out is bounded rigorously, and where that bound
+        is not small the rows are evaluated plainly, unless "taylor" is asked for.
+        """
         if arithmetic == "plain":
             return None
         highest = int(self.degrees.max(initial=0))
         orders = range(min(2, highest), highest + 1)
-        errors = np.array([self._truncation(order, eps) for order in orders])
-        accurate = errors <= ACCURACY
+        accurate = np.array([self._truncation(order, eps) for order in orders]) <= ACCURACY
         if not accurate.any(axis=0).all() and arithmetic != "taylor":
             return None
         # A row for which no order suffices takes the highest.
         choice = np.where(accurate.any(axis=0), accurate.argmax(axis=0), len(orders) - 1)
-        truncation = float(errors[choice, np.arange(len(choice))].max(initial=0.0))
-        return self._expansion(choice + orders[0], truncation)
+        found = self._expansion(choice + orders[0], eps)
+        if arithmetic != "taylor" and not np.all(found.remainder <= TRUSTED):
+            return None
+        return found
+
+    def _remainder(self, orders: np.ndarray, eps: float) -> np.ndarray:
+        """Lagrange's remainder after the highest degree used, from derivatives enclosed over the ball, and the terms
+        of lower degree that a row does without; relative to the row's greatest term."""
+        highest = int(orders.max(initial=0))
+        enclosed = _enclosed_coefficients(self, eps, highest + 1)
+        size = np.abs(self.table) * float(eps) ** self.degrees
+        skipped = np.where((self.degrees > orders[:, None]) & (self.degrees <= highest), size, 0.0).sum(axis=1)
+        greatest = size.max(axis=1, initial=0.0)
+        return (enclosed * float(eps) ** (highest + 1) + skipped) / np.where(greatest > 0.0, greatest, 1.0)
 
     def _truncation(self, order: int, eps: float) -> np.ndarray:
         """Estimate of each row's largest relative error on the ball if degrees above `order` are left out."""
@@ -108,7 +127,7 @@ class LocalProblem:
         left = left + size[:, self.degrees == highest].sum(axis=1) * (eps if order == highest else 0.0)
         return left / np.where(kept > 0.0, kept, 1.0)
 
-    def _expansion(self, orders: np.ndarray, truncation: float) -> Expansion:
+    def _expansion(self, orders: np.ndarray, eps: float) -> Expansion:
         order = int(orders.max(initial=0))
         chosen = [powers for powers in self.powers if sum(powers) <= order]
         place = {powers: m for m, powers in enumerate(chosen)}
@@ -120,7 +139,21 @@ class LocalProblem:
             factors.append(factor)
         kept = np.where(self.degrees <= orders[:, None], self.table, 0.0)[:, : len(chosen)]
         polynomials = sparse_polynomials(np.array(parents, np.int64), np.array(factors, np.int64), kept)
-        return Expansion(order=order, polynomials=polynomials, truncation=truncation)
+        return Expansion(order=order, polynomials=polynomials, remainder=self._remainder(orders, eps))
+
+
+@lru_cache(maxsize=256)
+def _enclosed_coefficients(problem: LocalProblem, eps: float, degree: int) -> np.ndarray:
+    """For each varying row, the sum over monomials of that degree of the largest coefficient anywhere on the ball."""
+    state, rows = problem.limit.state, problem.kernels.rows
+    variables = [state.scene.q[i] for i in problem.shape]
+    point = {s: ball(value, bits=BITS) for s, value in state.substitution.items() if s not in state.scene.u}
+    for x in variables:
+        point[x] += flint.arb(0, float(eps))
+    expressions = [rows.expressions[r] for r in rows.varying]
+    wide = jets(expressions, variables, point, degree, bits=BITS)
+    bounds = [sum((abs(c).upper() for m, c in jet.terms.items() if sum(m) == degree), flint.arb(0)) for jet in wide]
+    return np.array([np.nextafter(float(bound.upper()), np.inf) for bound in bounds])
 
 
 @lru_cache(maxsize=64)
