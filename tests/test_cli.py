@@ -1,22 +1,17 @@
 """The command line keeps its contract with scripts, and answers bad input with one line and status 2."""
 
-import json
 import math
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from command_line import assert_refused, run_json
 
 from painleve.cli import main
 from painleve.mechanics.library import SCENE_NAMES, load_scene
 
 NAMED = [(scene, state.name) for scene in SCENE_NAMES for state in load_scene(scene).states]
-
-
-def run_json(capsys: pytest.CaptureFixture[str], *words: str) -> dict:
-    assert main([*words, "--json"]) == 0
-    return json.loads(capsys.readouterr().out)
 
 
 @pytest.mark.parametrize(("scene", "state"), NAMED)
@@ -131,13 +126,7 @@ BAD = [
 
 @pytest.mark.parametrize("words", BAD, ids=" ".join)
 def test_bad_input_gives_one_line_on_stderr_status_2_and_no_file(words, capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert main(words) == 2
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    assert captured.err.startswith("painleve: ")
-    assert captured.err.count("\n") == 1
-    assert list(tmp_path.iterdir()) == []
+    assert_refused(words, capsys, tmp_path, monkeypatch)
 
 
 def test_the_error_for_a_state_off_the_constraint_says_by_how_much(capsys):

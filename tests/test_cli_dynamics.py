@@ -1,11 +1,11 @@
 """`simulate` and `ensemble` keep their contract with scripts, and answer bad input with one line and status 2."""
 
-import json
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from command_line import assert_refused, run_json
 
 import painleve.dynamics.fixed_step as fixed_step
 from painleve.cli import main
@@ -21,11 +21,6 @@ STOSS = ("slender_rod", "--state", "stoss")
 SLIDING = ("slender_rod", "--state", "sliding")
 SHORT = ("--step", "1e-2", "--until", "0.1")
 FALL = ("slender_rod", "--q", "x=0", "y=3", "theta=pi/2", "--u", "x=1/2")
-
-
-def run_json(capsys: pytest.CaptureFixture[str], *words: str) -> dict:
-    assert main([*words, "--json"]) == 0
-    return json.loads(capsys.readouterr().out)
 
 
 def test_simulate_answers_with_the_keys_that_scripts_rely_on(capsys):
@@ -170,18 +165,4 @@ BAD = [
 @pytest.mark.allow_fp_errors
 @pytest.mark.parametrize("words", BAD, ids=" ".join)
 def test_bad_input_gives_one_line_on_stderr_status_2_and_no_file(words, capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert main(words) == 2
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    assert captured.err.startswith("painleve: ")
-    assert captured.err.count("\n") == 1
-    assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize("command", ["simulate", "ensemble"])
-def test_every_command_helps_with_an_example(command, capsys):
-    with pytest.raises(SystemExit) as stopped:
-        main([command, "--help"])
-    assert stopped.value.code == 0
-    assert "example: painleve " + command in " ".join(capsys.readouterr().out.split())
+    assert_refused(words, capsys, tmp_path, monkeypatch)

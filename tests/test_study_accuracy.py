@@ -1,11 +1,8 @@
 """The baseline is a fair one, and the two studies of accuracy say what their datasets hold."""
 
-import importlib.util
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
+from study_runs import load_study
 
 from painleve.asymptotics.limit_set import limit_set
 from painleve.asymptotics.local import make_local_problem
@@ -20,16 +17,6 @@ from painleve.sweep.near_critical import NearCase
 from painleve.sweep.text_table import text_table
 from painleve.sweep.work_precision import RUN_OUTCOMES
 
-STUDIES = Path(__file__).parents[1] / "studies"
-
-
-def study(name: str):
-    spec = importlib.util.spec_from_file_location(name, STUDIES / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module  # where the dataclasses of a study look up their names
-    spec.loader.exec_module(module)
-    return module
-
 
 def limit(scene: str, state: str):
     return limit_set(make_state(load_scene(scene), state))
@@ -38,13 +25,13 @@ def limit(scene: str, state: str):
 @pytest.fixture(scope="module")
 def speed(tmp_path_factory):
     output = tmp_path_factory.mktemp("speed")
-    return study("speed_accuracy").run(output, quick=True), load(output / "speed_accuracy.h5")
+    return load_study("speed_accuracy").run(output, quick=True), load(output / "speed_accuracy.h5")
 
 
 @pytest.fixture(scope="module")
 def fail(tmp_path_factory):
     output = tmp_path_factory.mktemp("fail")
-    return study("where_methods_fail").run(output, quick=True), output
+    return load_study("where_methods_fail").run(output, quick=True), output
 
 
 @pytest.mark.parametrize(("scene", "state"), [("slender_rod", "critical"), ("worn_tip_rod", "paradox")])

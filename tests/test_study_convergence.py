@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -10,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from study_runs import load_study
 
 from painleve.dynamics.graph_distance import graph_distance, velocity_graph
 from painleve.dynamics.schemes import SCHEME_NAMES, load_scheme
@@ -29,14 +29,8 @@ COLLISIONS = ("point_impact", "point_fall", "rod_impact", "arm_impact", "rod_fal
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path]:
-    path = Path(__file__).parents[1] / "studies" / "convergence.py"
-    spec = importlib.util.spec_from_file_location("study_convergence", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
     folder = tmp_path_factory.mktemp("convergence")
-    return module.run(folder, quick=True), folder
+    return load_study("convergence").run(folder, quick=True), folder
 
 
 def test_a_jump_shifted_by_a_step_costs_the_step_and_not_its_height() -> None:

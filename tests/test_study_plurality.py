@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 from scipy.special import rgamma
+from study_runs import load_study
 
 from painleve.core.jam_map import jam_fraction, limit_law
 from painleve.dynamics.genot_brogliato import find_friction, singular_point
@@ -126,20 +125,10 @@ def test_the_scheme_jams_as_often_as_the_map_says_where_the_map_leaves_out_littl
     assert found["others"].values.tolist() == [0, 0]
 
 
-def load_study() -> ModuleType:
-    path = Path(__file__).parents[1] / "studies" / "plurality.py"
-    spec = importlib.util.spec_from_file_location("study_plurality", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path]:
     folder = tmp_path_factory.mktemp("plurality")
-    return load_study().run(folder, quick=True), folder
+    return load_study("plurality").run(folder, quick=True), folder
 
 
 def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyResult, Path]) -> None:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import importlib.util
 from pathlib import Path
-from types import ModuleType
 
 import pytest
+from study_runs import load_study
 
 from painleve.asymptotics.theorem import classify
 from painleve.mechanics.library import SCENE_NAMES, load_scene
@@ -17,20 +16,10 @@ from painleve.sweep import StudyResult
 STATES = [(scene, state.name) for scene in SCENE_NAMES for state in load_scene(scene).states]
 
 
-def load_study() -> ModuleType:
-    path = Path(__file__).parents[1] / "studies" / "theorem1.py"
-    spec = importlib.util.spec_from_file_location("study_theorem1", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path]:
     folder = tmp_path_factory.mktemp("theorem1")
-    return load_study().run(folder, quick=True), folder
+    return load_study("theorem1").run(folder, quick=True), folder
 
 
 def rows(finished: tuple[StudyResult, Path]) -> dict[tuple[str, str], dict]:
