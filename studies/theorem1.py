@@ -31,7 +31,7 @@ from tqdm import tqdm
 
 from painleve.asymptotics.sample import SampleOptions
 from painleve.asymptotics.theorem import Status
-from painleve.mechanics.library import SCENE_NAMES, load_scene
+from painleve.mechanics.library import load_scene
 from painleve.plotting import draw, save_figure
 from painleve.sets import Bounds
 from painleve.store import check_writable, save
@@ -39,6 +39,7 @@ from painleve.sweep import StudyResult, map_gamma, sweep_distances, sweep_member
 from painleve.sweep.variables import BRANCHES, STATUSES
 
 EPS = np.logspace(-1, -6, 16)
+SCENES = ("slender_rod", "worn_tip_rod", "two_link_arm")
 QUICK_EPS = np.logspace(-1, -6, 6)
 PICTURE_EPS = (1e-1, 1e-2)
 COLUMNS = ("scene", "state", "branch", "slope", "verdict", "e(A_eps, A)", "e(A, A_eps) sampled", "witnessed", "seconds")
@@ -48,10 +49,10 @@ def run(output: Path, *, quick: bool = False, seed: int = 0) -> StudyResult:
     """Sweep, draw and tabulate all states; `output` is an existing folder."""
     check_writable(output / "distances.h5")
     eps = QUICK_EPS if quick else EPS
-    total = sum(len(load_scene(name).states) * len(eps) for name in SCENE_NAMES)
+    total = sum(len(load_scene(name).states) * len(eps) for name in SCENES)
     rows, files = [], []
     with tqdm(total=total, leave=False, disable=None, file=sys.stderr, unit="point") as bar:
-        for name in SCENE_NAMES:
+        for name in SCENES:
             bar.set_description(name)
             datasets = _measure(name, eps, quick=quick, seed=seed, progress=lambda label: bar.update())
             rows += list(_rows(name, datasets["distances"]))

@@ -7,7 +7,8 @@ from functools import cache
 import numpy as np
 import sympy as sp
 
-from painleve.mechanics.scene import Coordinate, Parameter, Scene, Segment, make_scene
+from painleve.mechanics.friction import Segment
+from painleve.mechanics.scene import Coordinate, Parameter, Scene, make_scene
 
 X, Y, T = (sp.Symbol(name, real=True) for name in ("x", "y", "t"))
 U_X, U_Y = sp.symbols("u_x u_y", real=True)

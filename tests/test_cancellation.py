@@ -5,6 +5,7 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 import pytest
+from planar_scenes import SCENE_NAMES
 from reference_law import DIGITS, Reference, dot, law, norm, to_mp
 
 from painleve.asymptotics.limit_set import LimitSet, limit_set
@@ -14,7 +15,7 @@ from painleve.asymptotics.optimise import OptimiseOptions, _differences, optimis
 from painleve.asymptotics.rates import rate
 from painleve.asymptotics.sample import SampleOptions, _Stream
 from painleve.core.sampling import BLOCK
-from painleve.mechanics.library import SCENE_NAMES, load_scene
+from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 
 EPS = 1e-12

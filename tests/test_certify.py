@@ -9,6 +9,7 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
+from planar_scenes import SCENE_NAMES
 from scipy.optimize import minimize
 
 from painleve.asymptotics.certify import CertifyOptions, certify_distance
@@ -18,7 +19,7 @@ from painleve.asymptotics.local import make_local_problem
 from painleve.asymptotics.pieces import contact_pieces
 from painleve.asymptotics.sample import SampleOptions, sample_distance
 from painleve.errors import InputError
-from painleve.mechanics.library import SCENE_NAMES, load_scene
+from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 
 NAMED = [

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 from command_line import assert_refused, run_json
+from planar_scenes import SCENE_NAMES
 
 from painleve.cli import main
-from painleve.mechanics.library import SCENE_NAMES, load_scene
+from painleve.mechanics.library import load_scene
 
 NAMED = [(scene, state.name) for scene in SCENE_NAMES for state in load_scene(scene).states]
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from command_line import assert_refused, run_json
+from planar_scenes import SCENE_NAMES
 
 import painleve.dynamics.fixed_step as fixed_step
 from painleve.cli import main
@@ -13,7 +14,7 @@ from painleve.core.motion_codes import Outcome
 from painleve.dynamics.simulate import simulate
 from painleve.dynamics.start import Start
 from painleve.kernels.motion import make_motion
-from painleve.mechanics.library import SCENE_NAMES, load_scene
+from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 from painleve.store import load
 

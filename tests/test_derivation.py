@@ -7,11 +7,12 @@ import sympy as sp
 from sympy.physics.mechanics import LagrangesMethod, dynamicsymbols
 
 from painleve.mechanics.derive import derive
+from painleve.mechanics.friction import Segment
 from painleve.mechanics.library import SCENE_NAMES, load_scene
-from painleve.mechanics.scene import Coordinate, Parameter, Scene, Segment, make_scene
+from painleve.mechanics.scene import Coordinate, Parameter, Scene, make_scene
 from painleve.mechanics.signs import Sign, exact_sign
 
-ROD, WORN, ARM = (load_scene(name) for name in SCENE_NAMES)
+ROD, WORN, ARM = (load_scene(name) for name in ("slender_rod", "worn_tip_rod", "two_link_arm"))
 x, y, theta = ROD.q
 m, l, I, mu, gravity = ROD.p  # noqa: E741 (the field's letters)
 sin, cos = sp.sin(theta), sp.cos(theta)
@@ -146,8 +147,9 @@ def test_a_frictionless_scene_has_gamma_a_and_no_tangential_quantities():
     d = derive(block(None))
     assert d.a == sp.Rational(2, 5)  # the (y, y) entry of the inverse of M
     assert d.gamma == d.a
-    assert d.edge_plus == d.edge_minus == d.a
-    assert (d.b, d.C, d.tangent_response, d.critical_friction) == (None, None, None, None)
+    assert d.edge_plus == d.a
+    assert (d.b, d.C, d.edge_minus, d.critical_friction) == (None, None, None, None)
+    assert d.tangent_response.shape == (2, 0)
 
 
 def test_an_asymmetric_section_takes_the_lesser_of_its_two_ends():
@@ -194,6 +196,18 @@ def test_gamma_is_the_least_over_a_fine_grid_of_the_section_of_what_the_paper_de
     point = {s: sp.Rational(3 * i + 2, 7) for i, s in enumerate((*scene.q, *scene.p))}
     M, n, H = (sp.Matrix(e).xreplace(point).evalf(30) for e in (scene.inertia, d.normal, scene.tangents))
     size = n.norm()
-    minus, plus = (e.xreplace(point).evalf(30) for e in (scene.friction.minus, scene.friction.plus))
-    values = [(n.T * M.LUsolve(n + H * (-minus + (plus + minus) * j / 10)))[0] / size**2 for j in range(11)]
-    assert abs(min(values) - d.gamma.xreplace(point).evalf(30)) < 1e-25 * max(map(abs, values))
+    values = [(n.T * M.LUsolve(n + H * s))[0] / size**2 for s in section_grid(scene.friction, point)]
+    gamma = d.gamma.xreplace(point).evalf(30)
+    spread = max(values) - min(values)
+    # the ends of a segment are on the grid; on a circle of 2000 points the least is missed by a millionth of the spread
+    missed = 0 if scene.friction_dimension == 1 else spread * 3e-6
+    assert -1e-25 * max(map(abs, values)) <= min(values) - gamma <= missed + 1e-25 * max(map(abs, values))
+
+
+def section_grid(friction, point):
+    if isinstance(friction, Segment):
+        minus, plus = (e.xreplace(point).evalf(30) for e in (friction.minus, friction.plus))
+        return [sp.Matrix([-minus + (plus + minus) * j / 10]) for j in range(11)]
+    circle = [sp.Matrix([sp.cos(t), sp.sin(t)]).evalf(30) for t in (2 * sp.pi * j / 2000 for j in range(2000))]
+    E = friction.map.xreplace(point).evalf(30)
+    return [E * sigma for sigma in circle]

@@ -13,11 +13,12 @@ import sympy as sp
 from flint import arb
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from planar_scenes import SCENE_NAMES
 
 from painleve.mechanics.balls import ball
 from painleve.mechanics.derive import derive
 from painleve.mechanics.jets import Jet, jets, monomials
-from painleve.mechanics.library import SCENE_NAMES, load_scene
+from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 
 X, Y = sp.symbols("x y", real=True)

@@ -11,13 +11,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from planar_scenes import SCENE_NAMES
 from reference_law import DIGITS, Local, Reference, law, to_mp
 from scipy import sparse
 
 from painleve.core.codes import Branch
 from painleve.core.law import law_from_rows, planar_impulse
 from painleve.kernels.compiled import make_kernels
-from painleve.mechanics.library import SCENE_NAMES, load_scene
+from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 
 # --- random contacts -------------------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import sympy as sp
+from planar_scenes import SCENE_NAMES
 from scipy.optimize import minimize
 
 from painleve.asymptotics.limit_set import LimitSet, limit_set
@@ -14,7 +15,7 @@ from painleve.asymptotics.sample import SampleOptions, sample_distance
 from painleve.core.codes import Branch
 from painleve.core.farthest import farthest
 from painleve.errors import InputError
-from painleve.mechanics.library import SCENE_NAMES, load_scene
+from painleve.mechanics.library import load_scene
 from painleve.mechanics.scene import Coordinate, StateKey, make_scene
 from painleve.mechanics.state import make_state
 from painleve.sets import Segment

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import sympy as sp
+from planar_scenes import SCENE_NAMES
 
 from painleve.asymptotics.limit_set import LimitSet, limit_set
 from painleve.asymptotics.local import make_local_problem
 from painleve.asymptotics.member import make_member
 from painleve.asymptotics.optimise import optimise_distance
 from painleve.asymptotics.rates import rate
-from painleve.mechanics.library import SCENE_NAMES, load_scene
+from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 
 STATES = [(scene, state.name) for scene in SCENE_NAMES for state in load_scene(scene).states]

@@ -13,6 +13,7 @@ from functools import cache
 import flint
 import numpy as np
 import pytest
+from planar_scenes import SCENE_NAMES
 from scipy import stats
 
 from painleve import sets
@@ -27,7 +28,7 @@ from painleve.core.offset import planar_split
 from painleve.core.reduce import distance_squared
 from painleve.core.sampling import BLOCK
 from painleve.core.taylor import monomial_block, polynomial_block, sparse_polynomials
-from painleve.mechanics.library import SCENE_NAMES, load_scene
+from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 
 STATES = [(scene, state.name) for scene in SCENE_NAMES for state in load_scene(scene).states]

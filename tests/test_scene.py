@@ -6,8 +6,9 @@ import pytest
 import sympy as sp
 
 from painleve.errors import InputError
+from painleve.mechanics.friction import Segment
 from painleve.mechanics.library import SCENE_NAMES, load_scene
-from painleve.mechanics.scene import Coordinate, NamedState, Parameter, Scene, Segment, StateKey, make_scene
+from painleve.mechanics.scene import Coordinate, NamedState, Parameter, Scene, StateKey, make_scene
 
 X, Y = (Coordinate(name=n, unit="m", sentence=f"coordinate {n}") for n in ("x", "y"))
 MU = Parameter(name="mu", unit="1", sentence="coefficient of friction", default="1/2", range="nonnegative")

@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from planar_scenes import SCENE_NAMES
 from study_runs import load_study
 
 from painleve.asymptotics.theorem import classify
-from painleve.mechanics.library import SCENE_NAMES, load_scene
+from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 from painleve.store import load
 from painleve.sweep import StudyResult

@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from planar_scenes import SCENE_NAMES
 
 from painleve.asymptotics.distance import Attained, Distance
 from painleve.asymptotics.limit_set import LimitSet
@@ -21,7 +22,7 @@ from painleve.asymptotics.theorem import (
     judge,
     slope,
 )
-from painleve.mechanics.library import SCENE_NAMES, load_scene
+from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 from painleve.sets import Bounds
 

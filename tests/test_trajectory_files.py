@@ -11,13 +11,14 @@ import xarray as xr
 from dynamics_scenes import block
 from matplotlib.figure import Figure
 from PIL import Image
+from planar_scenes import SCENE_NAMES
 
 from painleve.core.motion_codes import Change
 from painleve.dynamics.simulate import simulate
 from painleve.dynamics.start import make_start
 from painleve.dynamics.trajectory import Trajectory
 from painleve.errors import InputError
-from painleve.mechanics.library import SCENE_NAMES, load_scene
+from painleve.mechanics.library import load_scene
 from painleve.mechanics.scene import Outline, make_scene
 from painleve.mechanics.state import make_state
 from painleve.plotting import draw, save_figure

@@ -8,6 +8,7 @@ from itertools import pairwise
 import mpmath
 import numpy as np
 import pytest
+from planar_scenes import SCENE_NAMES
 from reference_law import Reference, gamma_squared, law, norm, to_mp
 
 from painleve.asymptotics.limit_set import LimitSet, limit_set
@@ -16,7 +17,7 @@ from painleve.asymptotics.member import Member, make_member
 from painleve.asymptotics.witness import find_family, find_witness
 from painleve.core.codes import Branch
 from painleve.errors import InputError
-from painleve.mechanics.library import SCENE_NAMES, load_scene
+from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 
 DIGITS = 110  # more than the 320 bits of the enclosures that are checked

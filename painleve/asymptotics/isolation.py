@@ -25,6 +25,7 @@ from painleve.asymptotics.pieces import stick_piece
 from painleve.asymptotics.preimage import candidate_member
 from painleve.asymptotics.witness import find_witness
 from painleve.mechanics.jets import Jet, jets
+from painleve.mechanics.neighbourhood import smooth_indicator
 from painleve.sets import excess_of_segment_from_profile
 
 __all__ = ["Apart", "members_apart", "slips_nowhere"]
@@ -111,11 +112,9 @@ class _Forms:
 
     def __init__(self, problem: LocalProblem, eps: float) -> None:
         self.eps, self.variables = eps, len(problem.shape)
-        scene, derivation, limit = problem.kernels.scene, problem.kernels.derivation, problem.limit
-        assert scene.friction is not None  # without friction gamma > 0
-        s = scene.friction.plus if limit.edge == 1 else -scene.friction.minus
-        P = (derivation.normal.T * scene.inertia.adjugate() * (derivation.normal + s * scene.tangents))[0, 0]
-        expressions, variables = [P, scene.constraint], [scene.q[i] for i in problem.shape]
+        scene, limit = problem.kernels.scene, problem.limit
+        expressions = [smooth_indicator(scene, limit.edge), scene.constraint]
+        variables = [scene.q[i] for i in problem.shape]
         q, p, _ = base_balls(problem)
         point = dict(zip(scene.q, q, strict=True)) | dict(zip([x.symbol for x in scene.parameters], p, strict=True))
         with flint.ctx.workprec(BITS):

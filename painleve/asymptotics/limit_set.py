@@ -10,6 +10,7 @@ import numpy as np
 import sympy as sp
 
 from painleve import sets
+from painleve.asymptotics.least_energy import least_edge, least_energy
 from painleve.mechanics.derive import derive
 from painleve.mechanics.signs import Sign, Signed, exact_sign
 from painleve.mechanics.state import State
@@ -17,7 +18,7 @@ from painleve.mechanics.state import State
 __all__ = ["Edge", "LimitSet", "limit_set"]
 
 Kind = Literal["point", "pair", "segment", "undecided"]
-Edge = Literal[-1, 0, 1]
+Edge = int
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -25,8 +26,8 @@ class LimitSet:
     """A(q, u-): the point {u-}, the pair {u-, u_tilde} or the segment between them, with exact ends.
 
     `gamma` is the sign of gamma(q), `multiplier` the normal impulse of the jump from u- to u_tilde (0 if there is none)
-    and `tangential` its friction impulse. `edge` says on which edge s = +mu_plus or -mu_minus of the cone gamma is
-    attained; 0 if gamma > 0 or there is no friction.
+    and `tangential` its friction impulse (k,). `edge` says on which edge of the cone gamma is attained
+    (painleve.mechanics.derive.Derivation.edge_direction); 0 if gamma > 0 or there is no friction.
     """
 
     state: State
@@ -35,7 +36,7 @@ class LimitSet:
     gamma_value: float
     edge: Edge
     multiplier: sp.Expr
-    tangential: sp.Expr
+    tangential: tuple[sp.Expr, ...]
     u_tilde: tuple[sp.Expr, ...]
     reason: str
 
@@ -79,46 +80,35 @@ class LimitSet:
 def limit_set(state: State) -> LimitSet:
     """A(q, u-) of a state, from exact signs; kind "undecided" where a sign cannot be decided."""
     d, scene = derive(state.scene), state.scene
-    if scene.friction is None or d.b is None or d.C is None:
+    if scene.friction is None:
         return _limit(state, "point", exact_sign(state.exact(d.gamma)), 0, None, "without friction gamma is positive")
-    edges: tuple[tuple[Edge, sp.Expr], ...] = ((1, d.edge_plus), (-1, d.edge_minus))
-    signs = {edge: exact_sign(state.exact(expression)) for edge, expression in edges}
-    edge, gamma = _least(signs)
+    edge, gamma = least_edge(state)
     if gamma.sign is Sign.POSITIVE:
         return _limit(state, "point", gamma, 0, None, "gamma > 0: only r = 0 keeps the velocity tangential")
     if gamma.sign is Sign.UNDECIDED:
         return _limit(state, "undecided", gamma, edge, None, f"the sign of gamma is undecided: {gamma.reason}")
-    slip = (scene.tangents.T * sp.Matrix(scene.u))[0, 0]
-    drive = exact_sign(state.exact(slip * d.b))
-    if drive.sign is Sign.UNDECIDED:
-        return _limit(state, "undecided", gamma, edge, None, f"the sense of the slip is undecided: {drive.reason}")
-    if drive.sign is not Sign.POSITIVE:
+    least = least_energy(state, edge, gamma.sign)
+    if least.undecided:
+        return _limit(state, "undecided", gamma, edge, None, least.undecided)
+    if least.impulse is None:
         return _limit(state, "point", gamma, edge, None, "u_tilde = u-: the slip is not in the destabilising sense")
-    impulse = (slip * d.b / (d.a * d.C - d.b**2), -slip * d.a / (d.a * d.C - d.b**2))
     if gamma.sign is Sign.NEGATIVE:
-        reason = "gamma < 0: stay at u- or jump to u_tilde, where the tip sticks"
-        return _limit(state, "pair", gamma, edge, impulse, reason)
-    return _limit(state, "segment", gamma, edge, impulse, "gamma = 0: every velocity between u- and u_tilde")
-
-
-def _least(signs: dict[Edge, Signed]) -> tuple[Edge, Signed]:
-    """The edge on which gamma is attained: gamma has the sign of the smaller of the two compliances."""
-    order = (Sign.NEGATIVE, Sign.UNDECIDED, Sign.ZERO, Sign.POSITIVE)
-    edge = min(signs, key=lambda e: order.index(signs[e].sign))
-    return edge, signs[edge]
+        reason = f"gamma < 0: stay at u- or jump to u_tilde, where the tip {least.after}"
+        return _limit(state, "pair", gamma, edge, least.impulse, reason)
+    return _limit(state, "segment", gamma, edge, least.impulse, "gamma = 0: every velocity between u- and u_tilde")
 
 
 def _limit(
-    state: State, kind: Kind, gamma: Signed, edge: Edge, impulse: tuple[sp.Expr, sp.Expr] | None, reason: str
+    state: State, kind: Kind, gamma: Signed, edge: Edge, impulse: tuple[sp.Expr, ...] | None, reason: str
 ) -> LimitSet:
-    d = derive(state.scene)
-    u_tilde, normal, tangential = state.u, sp.Integer(0), sp.Integer(0)
-    if impulse is not None and d.tangent_response is not None:
-        normal, tangential = (state.exact(r) for r in impulse)
-        jump = d.normal_response * impulse[0] + d.tangent_response * impulse[1]
+    d, k = derive(state.scene), state.scene.friction_dimension
+    u_tilde, exact = state.u, (sp.Integer(0),) * (1 + k)
+    if impulse is not None:
+        exact = tuple(state.exact(r) for r in impulse)
+        jump = d.normal_response * impulse[0] + d.tangent_response * sp.Matrix(impulse[1:])
         u_tilde = tuple(u + state.exact(x) for u, x in zip(state.u, jump, strict=True))
     value = 0.0 if gamma.sign is Sign.ZERO else state.number(d.gamma)
     return LimitSet(
-        state=state, kind=kind, gamma=gamma, gamma_value=value, edge=edge, multiplier=normal, tangential=tangential,
+        state=state, kind=kind, gamma=gamma, gamma_value=value, edge=edge, multiplier=exact[0], tangential=exact[1:],
         u_tilde=u_tilde, reason=reason,
     )  # fmt: skip

@@ -26,6 +26,7 @@ from painleve.asymptotics.member import base_balls, jump_balls
 from painleve.asymptotics.taylor_models import Models, TaylorModel, expand, make_models, taylor_order
 from painleve.core.codes import Branch
 from painleve.errors import InputError
+from painleve.mechanics.friction import Segment
 
 __all__ = ["Constraint", "Map", "Piece", "contact_pieces", "stick_piece"]
 
@@ -90,8 +91,8 @@ class _Build:
         adjugate = scene.inertia.adjugate()  # expanded before it is divided by det M: remainders stay small
         expressions = [scene.constraint, scene.inertia.det(method="berkowitz"), *derivation.normal]
         expressions += [*(adjugate * derivation.normal)]
-        self.planar = scene.friction is not None
-        if scene.friction is not None:
+        self.planar = isinstance(scene.friction, Segment)
+        if isinstance(scene.friction, Segment):
             expressions += [*scene.tangents, *(adjugate * scene.tangents), scene.friction.plus, scene.friction.minus]
         found = expand(problem, eps, expressions, taylor_order(len(problem.shape), eps))
         inverse = found[1].reciprocal()

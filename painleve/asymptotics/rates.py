@@ -170,7 +170,7 @@ def _hessian(problem: LocalProblem, branch: Branch) -> np.ndarray:
 def _parallel(limit: LimitSet) -> bool:
     """Whether grad p is parallel to grad g, exactly."""
     state, d = limit.state, derive(limit.state.scene)
-    p = d.edge_plus if limit.edge == 1 else d.edge_minus
+    p = d.edge_compliance(limit.edge)
     grads = [[state.exact(sp.diff(f, x)) for x in state.scene.q] for f in (p, state.scene.constraint)]
     for i, j in combinations(range(len(grads[0])), 2):
         minor = exact_sign(grads[0][i] * grads[1][j] - grads[0][j] * grads[1][i])
@@ -206,7 +206,7 @@ def _sentence(limit: LimitSet, isolated: bool) -> str:
 def _closed_form(limit: LimitSet) -> sp.Expr | None:
     """C of the sticking branch where it has a closed form (see above), exact; None elsewhere."""
     state, scene, d = limit.state, limit.state.scene, derive(limit.state.scene)
-    if scene.dimension != 3 or len(d.shape) != 1 or d.tangent_response is None:
+    if scene.dimension != 3 or len(d.shape) != 1:
         return None
     theta, u = scene.q[d.shape[0]], sp.Matrix(scene.u)
     if exact_sign(state.exact((sp.diff(d.normal, theta).T * u)[0, 0])).sign is not Sign.ZERO:
@@ -236,7 +236,6 @@ def _closed_form(limit: LimitSet) -> sp.Expr | None:
 def _stopped(scene: Scene) -> sp.MatrixBase:
     """Y G^-1 W^T: what of v the sticking impulse takes away."""
     d = derive(scene)
-    assert d.tangent_response is not None
     W, Y = d.normal.row_join(scene.tangents), d.normal_response.row_join(d.tangent_response)
     inverse = (W.T * Y).applyfunc(sp.cancel).inv().applyfunc(_shortened)
     return (Y * inverse * W.T).applyfunc(_shortened).applyfunc(sp.expand_trig)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from painleve.mechanics.derive import Derivation
+from painleve.mechanics.friction import Segment
 
 __all__ = ["Rows", "rows_of"]
 
@@ -35,7 +36,7 @@ def rows_of(derivation: Derivation) -> Rows:
     table += [(f"w_{x}", e) for x, e in zip(axes, d.normal, strict=True)]
     table += [(f"Yn_{x}", e) for x, e in zip(axes, d.normal_response, strict=True)]
     table += [("a", d.a), ("edge_plus", d.edge_plus)]
-    if scene.friction is not None and d.tangent_response is not None:
+    if isinstance(scene.friction, Segment):
         table += [(f"H_{x}", e) for x, e in zip(axes, scene.tangents, strict=True)]
         table += [(f"Yt_{x}", e) for x, e in zip(axes, d.tangent_response, strict=True)]
         table += [("b", d.b), ("C", d.C), ("edge_minus", d.edge_minus)]

@@ -16,10 +16,12 @@ from itertools import combinations
 import sympy as sp
 
 from painleve.mechanics.derive import derive
+from painleve.mechanics.friction import Polygon, Segment, norm
+from painleve.mechanics.scene import Scene
 from painleve.mechanics.signs import Sign, Signed, exact_sign
 from painleve.mechanics.state import State
 
-__all__ = ["Neighbourhood", "Neighbours", "neighbours"]
+__all__ = ["Neighbourhood", "Neighbours", "neighbours", "smooth_indicator"]
 
 HIGHEST_ORDER = 8  # of derivatives that are tried where gamma depends on one coordinate alone
 
@@ -41,9 +43,9 @@ class Neighbours:
 
 
 def neighbours(state: State, edge: int) -> Neighbours:
-    """The kind of a state with gamma(q) = 0, attained on the edge s = +mu_plus (+1) or -mu_minus (-1) of the cone."""
+    """The kind of a state with gamma(q) = 0, attained on that edge of the cone (Derivation.edge_direction)."""
     scene = state.scene
-    p, g = _compliance(state, edge), scene.constraint
+    p, g = smooth_indicator(state.scene, edge), scene.constraint
     if p.has(sp.Abs, sp.Min, sp.Max, sp.sign, sp.Piecewise):
         return Neighbours(kind=Neighbourhood.UNDECIDED, reason="gamma is not smooth: no Taylor expansion decides")
     used = [x for x in scene.q if x in p.free_symbols or x in g.free_symbols]
@@ -63,12 +65,20 @@ def neighbours(state: State, edge: int) -> Neighbours:
     return _without_slope(state, p)
 
 
-def _compliance(state: State, edge: int) -> sp.Expr:
-    """det(M) (a + s b) on that edge of the cone."""
-    scene, d = state.scene, derive(state.scene)
-    assert scene.friction is not None  # without friction gamma > 0
-    s = scene.friction.plus if edge == 1 else -scene.friction.minus
-    return (d.normal.T * scene.inertia.adjugate() * (d.normal + s * scene.tangents))[0, 0]
+def smooth_indicator(scene: Scene, edge: int) -> sp.Expr:
+    """A smooth function with the sign of gamma near a state where it is attained on that edge of the cone.
+
+    The compliance on that edge times det(M); for a disc or an ellipse a^2 - |E^T b|^2 times det(M)^2 (E maps the unit
+    disc to the section), which has no root in it.
+    """
+    d = derive(scene)
+    friction, adjugate = scene.friction, scene.inertia.adjugate()
+    assert friction is not None  # without friction gamma > 0
+    if isinstance(friction, Segment | Polygon):
+        along = scene.tangents * d.edge_direction(edge)
+        return (d.normal.T * adjugate * (d.normal + along))[0, 0]
+    a = (d.normal.T * adjugate * d.normal)[0, 0]
+    return a**2 - norm(friction.map.T * scene.tangents.T * adjugate * d.normal) ** 2
 
 
 def _approached(reason: str) -> Neighbours:

@@ -13,8 +13,9 @@ from typing import Literal
 import sympy as sp
 
 from painleve.errors import InputError
+from painleve.mechanics.friction import Polygon, Section
 
-__all__ = ["Coordinate", "NamedState", "Outline", "Parameter", "Scene", "Segment", "StateKey", "make_scene"]
+__all__ = ["Coordinate", "NamedState", "Outline", "Parameter", "Scene", "StateKey", "make_scene"]
 
 Range = Literal["positive", "nonnegative", "real"]
 
@@ -79,19 +80,6 @@ class NamedState:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Segment:
-    """Planar friction section B(q) = [-minus, plus]; both ends are >= 0 and may depend on q."""
-
-    minus: sp.Expr
-    plus: sp.Expr
-
-    def __post_init__(self) -> None:
-        # plain numbers are welcome; text is not, for sympify would run it
-        for end in ("minus", "plus"):
-            object.__setattr__(self, end, sp.sympify(getattr(self, end), strict=True))
-
-
-@dataclass(frozen=True, kw_only=True)
 class Outline:
     """What a picture of the body needs, in metres: a polyline of points (x, y), and the height of the floor below it.
 
@@ -126,7 +114,7 @@ class Scene:
     force: sp.ImmutableMatrix
     constraint: sp.Expr
     tangents: sp.ImmutableMatrix
-    friction: Segment | None
+    friction: Section | None
     keys: tuple[StateKey, ...]
     placement: Mapping[str, sp.Expr]
     velocity: Mapping[str, sp.Expr]
@@ -152,7 +140,7 @@ class Scene:
 
     @property
     def friction_dimension(self) -> int:
-        """k: 0 without friction, 1 in the plane."""
+        """k: 0 without friction, 1 in the plane, 2 in space."""
         return self.tangents.shape[1]
 
     def parameter(self, name: str) -> Parameter:
@@ -183,7 +171,7 @@ def make_scene(
     force: sp.MatrixBase | None = None,
     constraint: sp.Expr,
     tangential_displacements: Iterable[sp.Expr] = (),
-    friction: Segment | None = None,
+    friction: Section | None = None,
     keys: Iterable[StateKey] = (),
     placement: Mapping[str, sp.Expr] | None = None,
     velocity: Mapping[str, sp.Expr] | None = None,
@@ -217,7 +205,7 @@ def make_scene(
     _check_symbols(name, "g", sp.Matrix([constraint]), [*q, *p])
     _check_symbols(name, "H", H, [*q, *p])
     if friction is not None:
-        _check_symbols(name, "the friction section", sp.Matrix([friction.minus, friction.plus]), [*q, *p])
+        _check_symbols(name, "the friction section", sp.Matrix(friction.expressions), [*q, *p])
     if outline is not None:
         _check_symbols(name, "the outline", sp.Matrix(outline.points), [*q, *p])
         _check_symbols(name, "the floor of the outline", sp.Matrix([outline.floor]), p)
@@ -293,12 +281,14 @@ def _check_targets(scene: str, rule: Mapping[str, sp.Expr], allowed: list[str]) 
         raise InputError(f"scene {scene}: a state key's rule gives {unknown}, which is not one of {', '.join(allowed)}")
 
 
-def _check_friction(scene: str, H: sp.MatrixBase, friction: Segment | None) -> None:
-    k = H.shape[1]
-    if k not in (0, 1) or (k == 0) != (friction is None):
-        have = "no friction section" if friction is None else "a segment"
-        raise InputError(f"scene {scene}: {k} tangential displacements with {have}; "
-                         "a segment needs one displacement, no friction needs none")  # fmt: skip
+def _check_friction(scene: str, H: sp.MatrixBase, friction: Section | None) -> None:
+    k, wanted = H.shape[1], 0 if friction is None else friction.dimension
+    if k != wanted:
+        have = "no friction section" if friction is None else f"a {type(friction).__name__.lower()} as friction section"
+        raise InputError(f"scene {scene}: {k} tangential displacements with {have}; no friction needs none, "
+                         "a segment one, a disc, an ellipse or a polygon two")  # fmt: skip
+    if isinstance(friction, Polygon) and len(friction.vertices) < 3:
+        raise InputError(f"scene {scene}: a friction polygon needs three vertices at least")
 
 
 def _check_symbols(scene: str, where: str, expressions: sp.MatrixBase, declared: list[sp.Symbol]) -> None:

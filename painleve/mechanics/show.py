@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from painleve.mechanics.derive import Derivation, derive
+from painleve.mechanics.friction import Disc, Ellipse, Polygon, Segment, norm
 from painleve.mechanics.parse import parse_expression
 from painleve.mechanics.scene import Coordinate, Parameter, Scene
 
@@ -48,27 +49,44 @@ def _contact(scene: Scene) -> Iterator[Line]:
     d = derive(scene)
     if scene.friction is not None:
         yield Line(name="H", plain="H(q)", latex="H(q)", expression=scene.tangents.applyfunc(_short),
-                   sentence="gradient of the contact point's tangential displacement")  # fmt: skip
+                   sentence="gradients of the contact point's tangential displacements, column by column")  # fmt: skip
         yield from _section(d)
     yield Line(name="a", plain="a(q)", latex="a(q)", expression=_short(d.a),
                sentence="normal compliance, ∇g·M⁻¹∇g")  # fmt: skip
-    if d.b is not None and d.C is not None:
-        yield Line(name="b", plain="b(q)", latex="b(q)", expression=_short(d.b),
+    if scene.friction is not None:
+        yield Line(name="b", plain="b(q)", latex="b(q)", expression=_scalar(d.couplings.applyfunc(_short)),
                    sentence="coupling of normal and tangent, -∇g·M⁻¹H")  # fmt: skip
-        yield Line(name="C", plain="C(q)", latex="C(q)", expression=_short(d.C),
+        yield Line(name="C", plain="C(q)", latex="C(q)", expression=_scalar(d.compliance.applyfunc(_short)),
                    sentence="tangential compliance, H·M⁻¹H")  # fmt: skip
     yield from _indicator(d)
 
 
 def _section(d: Derivation) -> Iterator[Line]:
     friction = d.scene.friction
-    assert friction is not None
+    if not isinstance(friction, Segment):
+        yield from _section_in_space(friction)
+        return
     size = sp.sqrt(_short(d.gradient_squared))
     ends = [d.scene.tangents.applyfunc(_short) * s / size for s in (-friction.minus, friction.plus)]
     yield Line(name="D_1_minus", plain="D₁(q) from", latex=r"D_1^-(q)", expression=ends[0],
                sentence="the friction section is the segment H s/|∇g|, from its end s = -μ")  # fmt: skip
     yield Line(name="D_1_plus", plain="D₁(q) to", latex=r"D_1^+(q)", expression=ends[1],
                sentence="to its end s = +μ")  # fmt: skip
+
+
+def _section_in_space(friction: Disc | Ellipse | Polygon | None) -> Iterator[Line]:
+    if isinstance(friction, Disc | Ellipse):
+        yield Line(name="E", plain="E(q)", latex="E(q)", expression=friction.map,
+                   sentence="the friction section is {H E σ/|∇g| : |σ| ≤ 1}")  # fmt: skip
+    elif friction is not None:
+        yield Line(name="vertices", plain="vertices", latex=r"\mathrm{vertices}",
+                   expression=sp.Matrix(friction.vertices),
+                   sentence="the friction section is {H s/|∇g|}, s in the polygon of these vertices")  # fmt: skip
+
+
+def _scalar(matrix: sp.MatrixBase) -> sp.Expr | sp.MatrixBase:
+    """A 1 x 1 matrix as its entry."""
+    return matrix[0] if matrix.shape == (1, 1) else matrix
 
 
 def _indicator(d: Derivation) -> Iterator[Line]:
@@ -97,19 +115,22 @@ def dependent_defaults(scene: Scene) -> dict[sp.Symbol, sp.Expr]:
 def _gamma(d: Derivation, values: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
     squared = _short(d.gradient_squared.xreplace(values))
     friction = d.scene.friction
-    if friction is None or d.b is None:
-        return _short(d.a.xreplace(values)) / squared
-    a, b = _short(d.a.xreplace(values)), _short(d.b.xreplace(values))
-    if friction.plus == friction.minus:
-        return (a - friction.plus.xreplace(values) * _absolute(b)) / squared
-    return sp.Min(_short(d.edge_plus.xreplace(values)), _short(d.edge_minus.xreplace(values))) / squared
+    a = _short(d.a.xreplace(values))
+    if friction is None:
+        return a / squared
+    if isinstance(friction, Segment) and friction.plus == friction.minus:
+        return (a - friction.plus.xreplace(values) * _absolute(_short(d.couplings[0].xreplace(values)))) / squared
+    if isinstance(friction, Segment):
+        assert d.edge_minus is not None
+        return sp.Min(_short(d.edge_plus.xreplace(values)), _short(d.edge_minus.xreplace(values))) / squared
+    return (a - _short((d.a - d.edge_plus).xreplace(values))) / squared
 
 
 def _critical(d: Derivation, values: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
-    assert d.b is not None
-    if d.b == 0:
+    size = norm(d.couplings.xreplace(values).applyfunc(_short))
+    if size == 0:
         return sp.oo
-    ratio = (d.a / d.b).xreplace(values)
+    ratio = d.a.xreplace(values) / size.replace(sp.Abs, lambda x: x)
     forms = [sp.fraction(sp.factor(sp.together(form))) for form in (ratio, _short(ratio))]
     return min((_absolute(n) / _absolute(m) for n, m in forms), key=_length)
 

@@ -164,13 +164,13 @@ def _check(state: State) -> None:
             raise InputError(f"{where}: M is not positive definite there; choose another configuration")
     if exact_sign(state.exact(d.gradient_squared)).sign is not Sign.POSITIVE:
         raise InputError(f"{where}: grad g vanishes there; choose another configuration")
-    if d.b is not None and exact_sign(state.exact(d.a * d.C - d.b**2)).sign is not Sign.POSITIVE:
-        raise InputError(f"{where}: the tangential displacement does not vary independently of g there (H3); "
-                         "choose another configuration")  # fmt: skip
     if scene.friction is not None:
-        for end in (scene.friction.minus, scene.friction.plus):
-            if exact_sign(state.exact(end)).sign not in (Sign.POSITIVE, Sign.ZERO):
-                raise InputError(f"{where}: the coefficient of friction is {state.number(end):.6g} there; "
+        if exact_sign(state.exact(d.delassus.det(method="berkowitz"))).sign is not Sign.POSITIVE:
+            raise InputError(f"{where}: the tangential displacements do not vary independently of g there (H3); "
+                             "choose another configuration")  # fmt: skip
+        for condition in scene.friction.conditions:
+            if exact_sign(state.exact(condition.expression)).sign not in (Sign.POSITIVE, Sign.ZERO):
+                raise InputError(f"{where}: {condition.sentence} is {state.number(condition.expression):.6g} there; "
                                  "it must be zero or positive")  # fmt: skip
     _check_zero(where, "g(q)", state.exact(scene.constraint), "the state is off the constraint")
     v_n = (d.normal.T * sp.Matrix(scene.u))[0, 0]

@@ -19,8 +19,9 @@ from painleve.dynamics.graph_distance import graph_distance, velocity_graph
 from painleve.dynamics.simulate import simulate
 from painleve.dynamics.start import Start, as_start, make_start
 from painleve.errors import InputError
+from painleve.mechanics.friction import Segment
 from painleve.mechanics.library import load_scene
-from painleve.mechanics.scene import Coordinate, Parameter, Scene, Segment, make_scene
+from painleve.mechanics.scene import Coordinate, Parameter, Scene, make_scene
 from painleve.mechanics.state import make_state
 from painleve.sets.shapes import FloatArray
 

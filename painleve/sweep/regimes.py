@@ -41,8 +41,8 @@ def map_regimes(
 
     Raises InputError for a scene without friction, and unless two different state keys are given.
     """
-    if scene.friction is None:
-        raise InputError(f"scene {scene.name}: no regimes without friction")
+    if scene.friction_dimension != 1:
+        raise InputError(f"scene {scene.name}: these regimes are those of friction in the plane")
     names, known = tuple(axes), [k.name for k in scene.keys]
     if len(names) != 2 or not set(names) <= set(known):
         raise InputError(f"regimes: give two state keys of {scene.name} as axes: {', '.join(known)}")

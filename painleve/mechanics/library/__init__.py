@@ -10,7 +10,7 @@ from painleve.mechanics.scene import Scene
 
 __all__ = ["SCENE_NAMES", "load_scene"]
 
-SCENE_NAMES = ("slender_rod", "worn_tip_rod", "two_link_arm")
+SCENE_NAMES = ("slender_rod", "worn_tip_rod", "two_link_arm", "spatial_rod")
 
 
 @cache

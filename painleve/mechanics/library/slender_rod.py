@@ -2,7 +2,8 @@
 
 import sympy as sp
 
-from painleve.mechanics.scene import Coordinate, NamedState, Outline, Parameter, Scene, Segment, StateKey, make_scene
+from painleve.mechanics.friction import Segment
+from painleve.mechanics.scene import Coordinate, NamedState, Outline, Parameter, Scene, StateKey, make_scene
 
 SOURCE = "P. Painlevé, C. R. Acad. Sci. Paris 121 (1895) 112-115; L. Paoli, IFIP AICT 494 (2016), section 1"
 

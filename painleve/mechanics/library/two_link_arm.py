@@ -7,7 +7,8 @@ condition that mu_c is stationary along the table is then a quadratic equation f
 
 import sympy as sp
 
-from painleve.mechanics.scene import Coordinate, NamedState, Outline, Parameter, Segment, StateKey, make_scene
+from painleve.mechanics.friction import Segment
+from painleve.mechanics.scene import Coordinate, NamedState, Outline, Parameter, StateKey, make_scene
 
 COORDINATES = (
     Coordinate(name="phi1", unit="rad", sentence="angle of the first link from the downward vertical",

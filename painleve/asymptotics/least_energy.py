@@ -1,0 +1,154 @@
+"""The jump of law (7) at a tangential contact: the impulse of least kinetic energy, exactly (the project's notes, 3).
+
+With g = 0 and <u-, n> = 0 an impulse (r_n, r_t) keeps the velocity tangential where a r_n + b.r_t = 0. In the plane
+and where gamma = 0 these are the multiples of one ray rho = (1, s), the energy least at r_n = max(0, -v_t.s/s.Q s).
+In space with gamma < 0 they fill a wedge: r_t between the rays r_n s_1 and r_n s_2 with a + b.s_i = 0 on the boundary
+of the section. The energy there is (r_t - r*).Q (r_t - r*)/2, Q = C - b b^T/a, r* = -Q^-1 v_t: the sticking impulse if
+it is in the wedge, else the best point of one of the two rays, where the tip slips on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from painleve.asymptotics.wedge import wedge
+from painleve.mechanics.derive import Derivation, derive
+from painleve.mechanics.friction import Polygon, Segment
+from painleve.mechanics.signs import Sign, Signed, exact_sign
+from painleve.mechanics.state import State
+
+__all__ = ["LeastEnergy", "least_edge", "least_energy"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LeastEnergy:
+    """The impulse (r_n, r_t) of the jump, None where u_tilde = u-; how the tip goes on; or why it is undecided."""
+
+    impulse: tuple[sp.Expr, ...] | None = None
+    after: str = ""
+    undecided: str = ""
+
+
+def least_edge(state: State) -> tuple[int, Signed]:
+    """The edge of the cone on which gamma is attained, and the sign of gamma, which is that of its compliance."""
+    d, friction = derive(state.scene), state.scene.friction
+    if isinstance(friction, Segment):
+        edges = [1, -1]
+    elif isinstance(friction, Polygon):
+        edges = _extreme_vertices(state, d, friction)
+    else:
+        return 1, _conic_sign(state, d)
+    signs = {edge: exact_sign(state.exact(d.edge_compliance(edge))) for edge in edges}
+    order = (Sign.NEGATIVE, Sign.UNDECIDED, Sign.ZERO, Sign.POSITIVE)
+    edge = min(signs, key=lambda e: order.index(signs[e].sign))
+    return edge, signs[edge]
+
+
+def _extreme_vertices(state: State, d: Derivation, friction: Polygon) -> list[int]:
+    """The vertices with the least compliance: what floats cannot tell from the least."""
+    values = [state.number(d.edge_compliance(i + 1)) for i in range(len(friction.vertices))]
+    near = 1e-9 * max(abs(state.number(d.a)), *(abs(value) for value in values))
+    return [i + 1 for i, value in enumerate(values) if value <= min(values) + near]
+
+
+def _conic_sign(state: State, d: Derivation) -> Signed:
+    """Of a - |E^T b|, by the square, which has no root in it."""
+    opposed = d.scene.friction.map.T * d.couplings  # type: ignore[union-attr]
+    return exact_sign(state.exact(d.a**2 - (opposed.T * opposed)[0, 0]))
+
+
+def least_energy(state: State, edge: int, gamma: Sign) -> LeastEnergy:
+    """The jump at a state with gamma(q) <= 0 attained on that edge."""
+    d = derive(state.scene)
+    slip = state.scene.tangents.T * sp.Matrix(state.scene.u)
+    if state.scene.friction_dimension == 1:
+        return _planar(state, d, slip[0])
+    if gamma is Sign.ZERO:
+        return _along_ray(state, d, slip, edge)
+    return _in_wedge(state, d, slip)
+
+
+def _planar(state: State, d: Derivation, slip: sp.Expr) -> LeastEnergy:
+    """The ray has s = -a/b: the jump ends where the tip sticks, if the slip is in the destabilising sense."""
+    b, C = d.couplings[0], d.compliance[0]
+    drive = exact_sign(state.exact(slip * b))
+    if drive.sign is Sign.UNDECIDED:
+        return LeastEnergy(undecided=f"the sense of the slip is undecided: {drive.reason}")
+    if drive.sign is not Sign.POSITIVE:
+        return LeastEnergy()
+    determinant = d.a * C - b**2
+    return LeastEnergy(impulse=(slip * b / determinant, -slip * d.a / determinant), after="sticks")
+
+
+def _along_ray(state: State, d: Derivation, slip: sp.MatrixBase, edge: int) -> LeastEnergy:
+    """gamma = 0 in space: one ray, if the section touches the line a + b.s = 0 in one point."""
+    if isinstance(state.scene.friction, Polygon):
+        others = [i for i in _extreme_vertices(state, d, state.scene.friction) if i != edge]
+        if any(exact_sign(state.exact(d.edge_compliance(i))).sign is not Sign.POSITIVE for i in others):
+            return LeastEnergy(undecided="gamma = 0 on a whole edge of the friction polygon (neither H4 nor "
+                               "H'4 holds): the ray of impulses is not unique, and nothing is claimed")  # fmt: skip
+    return _on_ray(state, d, slip, d.edge_direction(edge))
+
+
+def _on_ray(state: State, d: Derivation, slip: sp.MatrixBase, s: sp.MatrixBase) -> LeastEnergy:
+    drive = exact_sign(state.exact(-(slip.T * s)[0, 0]))
+    if drive.sign is Sign.UNDECIDED:
+        return LeastEnergy(undecided=f"the sense of the slip is undecided: {drive.reason}")
+    if drive.sign is not Sign.POSITIVE:
+        return LeastEnergy()
+    size = -(slip.T * s)[0, 0] / (s.T * _reduced(d) * s)[0, 0]
+    return LeastEnergy(impulse=(size, *(size * x for x in s)), after=_after(state, d, slip, size * s))
+
+
+def _reduced(d: Derivation) -> sp.MatrixBase:
+    """Q = C - b b^T/a."""
+    return d.compliance - d.couplings * d.couplings.T / d.a
+
+
+def _after(state: State, d: Derivation, slip: sp.MatrixBase, r_t: sp.MatrixBase) -> str:
+    """What the tip does after an impulse that keeps its normal velocity zero."""
+    left = slip + _reduced(d) * r_t
+    stays = all(exact_sign(state.exact(x)).sign is Sign.ZERO for x in left)
+    return "sticks" if stays else "slips on in another direction"
+
+
+def _in_wedge(state: State, d: Derivation, slip: sp.MatrixBase) -> LeastEnergy:
+    """gamma < 0 in space."""
+    Q = _reduced(d)
+    stick = -(Q.adjugate() * slip) / Q.det()
+    rays = wedge(state, d)
+    if rays is None:
+        return LeastEnergy(undecided="the sign of the normal compliance at a vertex of the polygon is undecided")
+    # r* is in the wedge of (s_1, s_2), counterclockwise and narrower than a half-plane, if it is left of one ray and
+    # right of the other.
+    sides = [exact_sign(state.exact(x)) for x in (_cross(rays[0], stick), _cross(stick, rays[1]))]
+    if any(side.sign is Sign.UNDECIDED for side in sides):
+        return LeastEnergy(undecided="whether the sticking impulse is in the friction cone is undecided: "
+                           + "; ".join(side.reason for side in sides if side.sign is Sign.UNDECIDED))  # fmt: skip
+    if all(side.sign in (Sign.POSITIVE, Sign.ZERO) for side in sides):
+        if all(exact_sign(state.exact(x)).sign is Sign.ZERO for x in slip):
+            return LeastEnergy()
+        normal = -(d.couplings.T * stick)[0, 0] / d.a
+        return LeastEnergy(impulse=(normal, *stick), after="sticks")
+    return _better(state, d, slip, [_on_ray(state, d, slip, s) for s in rays])
+
+
+def _better(state: State, d: Derivation, slip: sp.MatrixBase, found: list[LeastEnergy]) -> LeastEnergy:
+    """Of the best points of the two rays the one of less energy: 2 x the energy it takes is -slip.r_t."""
+    undecided = next((f for f in found if f.undecided), None)
+    if undecided is not None:
+        return undecided
+    jumps = [f for f in found if f.impulse is not None]
+    if len(jumps) < 2:
+        return jumps[0] if jumps else LeastEnergy()
+    first, second = (-(slip.T * sp.Matrix(f.impulse[1:]))[0, 0] for f in jumps)  # type: ignore[index]
+    difference = exact_sign(state.exact(first - second))
+    if difference.sign in (Sign.UNDECIDED, Sign.ZERO):
+        return LeastEnergy(undecided="which of the two edges of the wedge is nearer is undecided")
+    return jumps[0] if difference.sign is Sign.POSITIVE else jumps[1]
+
+
+def _cross(x: sp.MatrixBase, y: sp.MatrixBase) -> sp.Expr:
+    return x[0] * y[1] - x[1] * y[0]
