@@ -17,11 +17,15 @@ from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 
 from painleve.errors import InputError
+
+if TYPE_CHECKING:
+    from painleve.mechanics.scene import Scene
 
 __all__ = ["NOT_RUN", "PROVENANCE", "check_schema", "check_writable", "flags", "load", "provenance", "save"]
 
@@ -40,14 +44,19 @@ def flags(labels: Sequence[str]) -> dict[str, object]:
     return {"flag_values": values, "flag_meanings": " ".join(["not_run", *labels]), "units": "1"}
 
 
-def provenance(*, scene: str, scene_digest: str, seed: int, command: str | None = None) -> dict[str, str]:
-    """Where a dataset comes from, as text attributes; `command` defaults to the command line of this process."""
+def provenance(*, scene: Scene | str, scene_digest: str, seed: int, command: str | None = None) -> dict[str, str]:
+    """Where a dataset comes from, as text attributes; `command` defaults to the command line of this process.
+
+    `scene` is the scene, or the names of several. One that was read from a file leaves the file's text as `scene_text`:
+    written to a file again, it is the scene of this dataset.
+    """
+    from_file = {} if isinstance(scene, str) or not scene.text else {"scene_file": scene.file, "scene_text": scene.text}
     versions = {name: metadata.version(name) for name in LIBRARIES}
     line = shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])
     return {
         "painleve_version": metadata.version("painleve"),
         "git_commit": _git_commit(),
-        "scene": scene,
+        "scene": scene if isinstance(scene, str) else scene.name,
         "scene_digest": scene_digest,
         "seed": str(seed),
         "platform": platform.platform(),
@@ -55,6 +64,7 @@ def provenance(*, scene: str, scene_digest: str, seed: int, command: str | None 
         "library_versions": json.dumps(versions, sort_keys=True),
         "command": line if command is None else command,
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        **from_file,
     }
 
 

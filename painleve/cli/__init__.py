@@ -7,12 +7,12 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from painleve.cli import classify, derive, distance, ensemble, plot, rate, scenes, simulate, study, sweep
+from painleve.cli import classify, derive, distance, ensemble, new_scene, plot, rate, scenes, simulate, study, sweep
 from painleve.errors import InputError
 
 __all__ = ["main"]
 
-COMMANDS = (scenes, derive, classify, distance, rate, sweep, study, plot, simulate, ensemble)
+COMMANDS = (scenes, new_scene, derive, classify, distance, rate, sweep, study, plot, simulate, ensemble)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -39,7 +39,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _complain(message: str) -> int:
-    print(f"painleve: {' '.join(message.split())}", file=sys.stderr)
+    line = " ".join(message.split())
+    line = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in line)  # no terminal commands
+    print(f"painleve: {line}", file=sys.stderr)
     return 2
 
 

@@ -40,7 +40,8 @@ def add_command(
 
 
 def add_scene(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("scene", metavar="SCENE", help="a scene of the library; `painleve scenes` lists them")
+    parser.add_argument("scene", metavar="SCENE", help="a scene of the library (`painleve scenes` lists them), or "
+                        "a file of your own, FILE.toml (`painleve new-scene` writes one)")
 
 
 def add_state(parser: argparse.ArgumentParser) -> None:

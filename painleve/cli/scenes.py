@@ -1,4 +1,4 @@
-"""`painleve scenes`: what the library has."""
+"""`painleve scenes`: what the library, or a scene of the user's own, has."""
 
 from __future__ import annotations
 
@@ -13,13 +13,15 @@ def register(commands: Any) -> None:
         commands, "scenes", run, sentence="list the scenes with their keys, parameters and named states",
         example="painleve scenes",
     )  # fmt: skip
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="these alone, files of your own among them "
+                        "(default: the library)")  # fmt: skip
     add_json(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     from painleve.mechanics.library import SCENE_NAMES, load_scene
 
-    scenes = [load_scene(name) for name in SCENE_NAMES]
+    scenes = [load_scene(name) for name in options.scenes or SCENE_NAMES]
     if options.json:
         print_json({
             s.name: {

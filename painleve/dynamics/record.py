@@ -97,6 +97,6 @@ def _outline(trajectory: Trajectory) -> dict[str, xr.Variable]:
 
 def _evaluate(scene: Scene, expressions: list[sp.Expr], trajectory: Trajectory) -> np.ndarray:
     """Expressions in q and the parameters at every instant (n, number of expressions)."""
-    function = sp.lambdify((*scene.q, *scene.p), expressions, "numpy")
+    function = sp.lambdify((*scene.q, *scene.p), expressions, "numpy", dummify=True)
     columns = function(*trajectory.q.T, *trajectory.start.p)
     return np.stack([np.broadcast_to(column, len(trajectory.t)) for column in columns], axis=1).astype(float)

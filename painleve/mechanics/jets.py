@@ -14,6 +14,7 @@ from itertools import combinations_with_replacement
 import flint
 import sympy as sp
 
+from painleve.errors import InputError
 from painleve.mechanics.balls import ball
 
 __all__ = ["Jet", "jets", "monomials"]
@@ -90,7 +91,7 @@ def jets(
 ) -> list[Jet]:
     """The Taylor polynomials of the expressions in `variables` about the point `values`, up to `order`.
 
-    `values` must have every symbol. Raises ValueError for a function that is not analytic at the point.
+    `values` must have every symbol. Raises InputError for a function that is not analytic at the point.
     """
     with _precision(bits, order + 1):
         count = len(variables)
@@ -100,11 +101,19 @@ def jets(
         for symbol, value in values.items():
             linear = {unit[symbol]: flint.arb(1)} if symbol in unit and order > 0 else {}
             known[symbol] = Jet({zero: value} | linear, count, order)
-        exponential = [e.rewrite(sp.exp) if e.has(sp.sinh, sp.cosh, sp.tanh) else e for e in expressions]
-        shared, reduced = sp.cse(exponential, symbols=sp.numbered_symbols("cse_", real=True))
+        shared, reduced = sp.cse([_exponential(e) for e in expressions], symbols=sp.numbered_symbols("cse_", real=True))
         for symbol, expression in shared:
             known[symbol] = _jet(expression, known, count, order)
         return [_jet(expression, known, count, order) for expression in reduced]
+
+
+def _exponential(expression: sp.Expr) -> sp.Expr:
+    """Hyperbolic functions by exponentials; `rewrite` would take the circular ones along, into complex numbers."""
+    return (
+        expression.replace(sp.sinh, lambda x: (sp.exp(x) - sp.exp(-x)) / 2)
+        .replace(sp.cosh, lambda x: (sp.exp(x) + sp.exp(-x)) / 2)
+        .replace(sp.tanh, lambda x: 1 - 2 / (sp.exp(2 * x) + 1))
+    )
 
 
 def _jet(expression: sp.Expr, known: dict[sp.Expr, Jet], count: int, order: int) -> Jet:
@@ -127,7 +136,8 @@ def _jet(expression: sp.Expr, known: dict[sp.Expr, Jet], count: int, order: int)
     elif type(expression) in _SERIES:
         result = result.compose(_SERIES[type(expression)])
     else:
-        raise ValueError(f"no Taylor expansion for {type(expression).__name__}")
+        name = type(expression).__name__
+        raise InputError(f"no Taylor expansion for {name}, so none of this scene; write it in another way")
     known[expression] = result
     return result
 
@@ -149,7 +159,7 @@ def _power(base: Jet, exponent: sp.Expr) -> Jet:
         if root == 2:
             return _power(base.compose(lambda s: s.sqrt()), sp.Integer(exponent.p))
         return base.compose(lambda s: (s.log() * (flint.arb(int(exponent.p)) / root)).exp())
-    raise ValueError(f"no Taylor expansion for the exponent {exponent}")
+    raise InputError(f"no Taylor expansion for the exponent {exponent}, so none of this scene; write it with exp")
 
 
 def _absolute(jet: Jet) -> Jet:
@@ -157,7 +167,7 @@ def _absolute(jet: Jet) -> Jet:
         return jet
     if jet.constant() < 0:
         return jet.scale(flint.arb(-1))
-    raise ValueError("no Taylor expansion of |.| at zero")
+    raise InputError("no Taylor expansion of |.| at zero, so none of this scene at this state; choose another state")
 
 
 class _precision:

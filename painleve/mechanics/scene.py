@@ -71,12 +71,13 @@ class StateKey:
 
 @dataclass(frozen=True, kw_only=True)
 class NamedState:
-    """A state of the library: values of keys and parameters as exact expressions."""
+    """A state with a name: values of keys and parameters as exact expressions; `place` says where a file gives it."""
 
     name: str
     sentence: str
     keys: Mapping[str, str]
     parameters: Mapping[str, str]
+    place: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,7 +103,8 @@ class Scene:
 
     `inertia` is M(q) (d x d); `force` is f(t, q, u) (d x 1), gyroscopic terms included; `constraint` is g(q);
     `tangents` is H(q) (d x k); `placement`, `velocity` and `contact_parameters` say, in terms of the state keys
-    and the parameters, where the natural keys put q, u and those parameters that the contact fixes.
+    and the parameters, where the natural keys put q, u and those parameters that the contact fixes. `file` and `text`
+    are the name and the text of the file that it was read from, empty for a scene that was not.
     """
 
     name: str
@@ -121,6 +123,8 @@ class Scene:
     contact_parameters: Mapping[str, sp.Expr]
     states: tuple[NamedState, ...] = field(default=())
     outline: Outline | None = None
+    file: str = ""
+    text: str = ""
 
     @property
     def q(self) -> tuple[sp.Symbol, ...]:

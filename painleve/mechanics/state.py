@@ -14,7 +14,7 @@ from painleve.errors import InputError
 from painleve.mechanics.balls import ball
 from painleve.mechanics.derive import derive
 from painleve.mechanics.parse import exact_number, parse_expression
-from painleve.mechanics.scene import Scene
+from painleve.mechanics.scene import NamedState, Scene
 from painleve.mechanics.signs import Sign, exact_sign
 
 __all__ = ["Number", "State", "make_state", "resolve_parameters"]
@@ -67,16 +67,30 @@ def make_state(
     Values are exact: text such as "atan(2)", integers, fractions, sympy numbers; a float means the decimal it prints.
 
     Raises InputError for unknown keys or parameters, for values out of range, and for a state that is not exactly in
-    contact with a tangential velocity; the message says by how much.
+    contact with a tangential velocity; the message says by how much. For a scene
+    from a file it names that file, and the line of a named state.
     """
     named = scene.state(name) if name is not None else None
+    try:
+        return _state(scene, named, keys, parameters)
+    except InputError as error:
+        place = named.place if named else scene.file
+        if place:
+            raise InputError(f"{place}: {error}") from None
+        raise
+
+
+def _state(
+    scene: Scene, named: NamedState | None, keys: Mapping[str, Number] | None, parameters: Mapping[str, Number] | None
+) -> State:
     given = dict(named.keys if named else {}) | dict(keys or {})
     values, components = _sort_keys(scene, given)
     table = resolve_parameters(scene, dict(named.parameters if named else {}) | dict(parameters or {}), values)
     point = values | {p.symbol: table[p.name] for p in scene.parameters}
     q = _components(scene, {c.name: c.name for c in scene.coordinates}, scene.placement, point, components)
     u = _components(scene, {c.name: f"u_{c.name}" for c in scene.coordinates}, scene.velocity, point, components)
-    state = State(scene=scene, label=_label(name, keys, parameters), parameters=MappingProxyType(table), q=q, u=u)
+    label = _label(named.name if named else None, keys, parameters)
+    state = State(scene=scene, label=label, parameters=MappingProxyType(table), q=q, u=u)
     _check(state)
     return state
 

@@ -58,7 +58,7 @@ def sweep_distances(
     table.refuse_if_all_failed()
     settings = {name: value for name, value in vars(options).items() if isinstance(value, str | int | float)}
     source = provenance(
-        scene=scene.name, scene_digest=make_kernels(scene).digest, seed=int(settings.get("seed", 0)), command=command
+        scene=scene, scene_digest=make_kernels(scene).digest, seed=int(settings.get("seed", 0)), command=command
     )
     title = f"Distances between the limit set A and A_eps of {scene.name}: {scene.sentence}"
     attributes = {"title": title, "kind": "distances", "method": method, "settings": json.dumps(settings), **source}

@@ -74,7 +74,7 @@ def map_gamma(
         "title": f"gamma and the critical friction of {scene.name}: {scene.sentence}",
         "kind": "gamma_map",
         "path_symbol": f"${coordinate.latex or coordinate.name}$",
-        **provenance(scene=scene.name, scene_digest=kernels.digest, seed=0, command=command),
+        **provenance(scene=scene, scene_digest=kernels.digest, seed=0, command=command),
     }
     return xr.Dataset(variables, grid.coordinates() | {"path": path, "friction": friction}, attributes)
 

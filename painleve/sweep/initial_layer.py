@@ -109,6 +109,6 @@ def _dataset(
         "ratio": xr.Variable(("ratio",), np.array(ratios), {
             "long_name": f"radius eps of the balls ({ball_unit(scene)}) over the step size", "units": "1/s"}),
     }  # fmt: skip
-    source = provenance(scene=scene.name, scene_digest=make_motion(scene).digest, seed=seed, command=command)
+    source = provenance(scene=scene, scene_digest=make_motion(scene).digest, seed=seed, command=command)
     title = f"The initial layer of {scene.name} at tangential states with gamma < 0"
     return xr.Dataset(variables, coordinates, {"title": title, "kind": "initial_layer", **source})

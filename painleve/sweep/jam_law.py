@@ -147,6 +147,6 @@ def measure_jam_law(
     groups = np.array([c.group for c in cases], dtype=object)
     variables["group"] = xr.Variable(("case",), groups, {"long_name": "what the case tests", "units": "1"})
     scene = load_scene("slender_rod")
-    source = provenance(scene=scene.name, scene_digest=make_motion(scene).digest, seed=seed, command=command)
+    source = provenance(scene=scene, scene_digest=make_motion(scene).digest, seed=seed, command=command)
     title = "The jam law: which step sizes jam at a Génot-Brogliato point"
     return xr.Dataset(variables, attrs={"title": title, "kind": "jam_law", **source})

@@ -62,7 +62,7 @@ def sweep_members(
         "eps": xr.Variable(("eps",), np.array(radii), unit),
         "coordinate": text(["coordinate"], [c.name for c in scene.coordinates], "coordinate of the configuration"),
     }
-    source = provenance(scene=scene.name, scene_digest=make_kernels(scene).digest, seed=options.seed, command=command)
+    source = provenance(scene=scene, scene_digest=make_kernels(scene).digest, seed=options.seed, command=command)
     title = f"A and sampled members of A_eps of {scene.name}: {scene.sentence}"
     return xr.Dataset(variables, coordinates, {"title": title, "kind": "members", **source})
 

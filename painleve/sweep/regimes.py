@@ -62,7 +62,7 @@ def map_regimes(
         unit, sentence = meaning(scene, name)
         coordinates[name] = number((name,), np.asarray(values, float), sentence, unit)
     title = f"Regimes of the sliding contact of {scene.name}: {scene.sentence}"
-    source = provenance(scene=scene.name, scene_digest=make_kernels(scene).digest, seed=0, command=command)
+    source = provenance(scene=scene, scene_digest=make_kernels(scene).digest, seed=0, command=command)
     return xr.Dataset(variables, coordinates, {"title": title, "kind": "regimes", **source})
 
 
@@ -78,7 +78,7 @@ def _evaluate(
     symbols = [k.symbol for k in scene.keys if k.name in axes]
     symbols.sort(key=lambda s: list(axes).index(s.name))
     wanted = [derivation.edge_plus, derivation.edge_minus, slip, beta]
-    function = sp.lambdify(symbols, [placed(e) for e in wanted], "numpy")
+    function = sp.lambdify(symbols, [placed(e) for e in wanted], "numpy", dummify=True)
     mesh = np.meshgrid(*(np.asarray(axes[s.name], float) for s in symbols), indexing="ij")
     plus, minus, sense, acceleration = (np.broadcast_to(value, mesh[0].shape) for value in function(*mesh))
     return np.where(sense < 0.0, plus, minus), np.array(acceleration)

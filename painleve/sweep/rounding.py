@@ -64,7 +64,7 @@ def sweep_rounding(
         parts.append(_at_eps(problem, radius, members, samples, seed))
     dataset = xr.concat(parts, "eps")
     unit = {"units": ball_unit(state.scene), "long_name": "radius of the two closed balls about q and about u-"}
-    source = provenance(scene=state.scene.name, scene_digest=make_kernels(state.scene).digest, seed=seed,
+    source = provenance(scene=state.scene, scene_digest=make_kernels(state.scene).digest, seed=seed,
                         command=command)  # fmt: skip
     title = f"Plain and cancellation-free arithmetic at {state.scene.name} {state.label}"
     return dataset.assign_coords(eps=xr.Variable(("eps",), np.array(radii), unit)).assign_attrs(

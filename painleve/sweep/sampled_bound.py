@@ -67,6 +67,6 @@ def sweep_sampled_bound(
         "samples": number(("samples",), np.array(samples), "number of samples of A_eps", "1"),
         "eps": number(("eps",), radii, "radius of the two closed balls about q and about u-", ball_unit(scene)),
     }
-    source = provenance(scene=scene.name, scene_digest=make_kernels(scene).digest, seed=seed, command=command)
+    source = provenance(scene=scene, scene_digest=make_kernels(scene).digest, seed=seed, command=command)
     title = f"Sampled bounds on e(A, A_eps) at {scene.name} {state.label}, {sampler} points"
     return xr.Dataset(variables, coordinates, {"title": title, "kind": "sampled_bound", **source})

@@ -65,7 +65,7 @@ def sweep_schemes(
         "state": text(["state"], [label for label, *_ in states], "label of the state"),
         "run": text(["run"], [run.label for run in runs], "scheme with step or stiffness"),
     }
-    source = provenance(scene=scene.name, scene_digest=make_motion(scene).digest, seed=0, command=command)
+    source = provenance(scene=scene, scene_digest=make_motion(scene).digest, seed=0, command=command)
     title = f"Which limit each scheme chooses at states of {scene.name}"
     return xr.Dataset(variables, coordinates, {"title": title, "kind": "scheme_choice", **source})
 

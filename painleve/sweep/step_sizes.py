@@ -158,6 +158,6 @@ def _dataset(
         "decades": variable(("window",), [w.decades for w in windows], "width of the window, in decades", "1"),
     }
     scene = state.scene
-    source = provenance(scene=scene.name, scene_digest=make_motion(scene).digest, seed=seed, command=command)
+    source = provenance(scene=scene, scene_digest=make_motion(scene).digest, seed=seed, command=command)
     title = f"Outcome of {scene.name} {state.label} over the step size"
     return xr.Dataset(variables, coordinates, {"title": title, "kind": "step_sizes", **source})

@@ -1,21 +1,29 @@
-"""The library of scenes, one file each, listed once."""
+"""The library of scenes, one file each, listed once; a scene of the user's own is named by its file."""
 
 from __future__ import annotations
 
-from functools import cache
+import os
 from importlib import import_module
+from pathlib import Path
 
 from painleve.errors import InputError
 from painleve.mechanics.scene import Scene
+from painleve.mechanics.scene_file import read_scene
 
 __all__ = ["SCENE_NAMES", "load_scene"]
 
 SCENE_NAMES = ("slender_rod", "worn_tip_rod", "two_link_arm", "spatial_rod")
 
 
-@cache
-def load_scene(name: str) -> Scene:
-    """The library scene of that name. Raises InputError for an unknown name."""
-    if name not in SCENE_NAMES:
-        raise InputError(f"no scene {name!r}; the library has {', '.join(SCENE_NAMES)}")
-    return import_module(f"painleve.mechanics.library.{name}").SCENE
+def load_scene(name: str | Path) -> Scene:
+    """The library scene of that name, or the scene in a TOML file where a path is given: NAME.toml or FOLDER/NAME.
+
+    Raises InputError for an unknown name, and for a file that does not describe a scene (file, line and field).
+    """
+    if name in SCENE_NAMES:
+        scene: Scene = import_module(f"painleve.mechanics.library.{name}").SCENE
+        return scene
+    if isinstance(name, Path) or name.endswith(".toml") or os.sep in name:
+        return read_scene(name)
+    raise InputError(f"no scene {name!r}; the library has {', '.join(SCENE_NAMES)}, and a scene of your own is given "
+                     "by its file, such as my_scene.toml; `painleve new-scene` writes one")  # fmt: skip
