@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+from painleve.errors import InputError
 from painleve.kernels.files import load_generated
 from painleve.kernels.motion_source import motion_source
 from painleve.kernels.rows import Rows, rows_of
@@ -46,7 +47,12 @@ class Motion:
 
 @lru_cache(maxsize=64)
 def make_motion(scene: Scene) -> Motion:
-    """Generate and load a scene's motion; compiled at first call, from the disk cache in later processes."""
+    """Generate and load a scene's motion; compiled at first call, from the disk cache in later processes.
+
+    Raises InputError for friction in space, which the schemes do not step.
+    """
+    if scene.friction_dimension > 1:
+        raise InputError(f"scene {scene.name}: the schemes step frictionless and planar contact, not friction in space")
     derivation = derive(scene)
     rows = rows_of(derivation)
     module, digest, path = load_generated(f"motion_{scene.name}", motion_source(scene, rows))
