@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from painleve.asymptotics.certify import CertifyOptions
+    from painleve.asymptotics.coulomb import coulomb_solutions
     from painleve.asymptotics.limit_set import limit_set
     from painleve.asymptotics.methods import distance
     from painleve.asymptotics.optimise import OptimiseOptions
@@ -37,6 +38,7 @@ _HOMES = {
     "SampleOptions": "painleve.asymptotics.sample",
     "classify": "painleve.asymptotics.theorem",
     "collect": "painleve.asymptotics.theorem",
+    "coulomb_solutions": "painleve.asymptotics.coulomb",
     "derive": "painleve.mechanics.derive",
     "distance": "painleve.asymptotics.methods",
     "draw": "painleve.plotting.draw",
@@ -65,6 +67,7 @@ __all__ = [
     "SampleOptions",
     "classify",
     "collect",
+    "coulomb_solutions",
     "derive",
     "distance",
     "draw",

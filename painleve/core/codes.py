@@ -15,6 +15,7 @@ class Branch(IntEnum):
     SLIP_PLUS = 2  # friction impulse on the edge s = +mu_plus of the cone
     SLIP_MINUS = 3  # friction impulse on the edge s = -mu_minus
     FRICTIONLESS = 4  # an impact on a scene without friction
+    SLIP = 5  # slipping in space: friction impulse on the edge of a section of dimension 2
 
     @property
     def label(self) -> str:
