@@ -4,11 +4,11 @@ r = lambda (1, s), s in the section B, with u = (v_n, v_t) + G r: u_n >= 0, lamb
 s.u_t <= s'.u_t for all s' in B. Where s is interior to B this says u_t = 0; elsewhere
 - at a vertex V with the neighbours V': u_t.(V' - V) >= 0, and lambda (a + b.V) = -v_n;
 - on an edge e with the outward normal m: u_t.e = 0 > u_t.m, two linear equations in the multiples of its two vertices;
-- on the border of the unit disc: u_t = -kappa d, a quartic where v_n is not 0 (`slip_roots`). At v_n = 0 a slip on
-the disc has a + b.d = 0, which fixes d: two directions where gamma < 0, one where gamma = 0. Then d x (v_t + lambda
-(b + C d)) = 0 is linear in lambda: one slip at most, unless both of its coefficients vanish; then every lambda with
-kappa > 0 solves the problem, from 0 to the impulse that sticks. kappa does fall to 0, for the slope d.(b + C d) =
-rho.G rho of -kappa, rho = (1, d), is positive.
+- on the border of the unit disc: u_t = -kappa d, a quartic where v_n is not 0 (`slip_roots`).
+At v_n = 0 a slip on the disc has a + b.d = 0, which fixes d: two directions where gamma < 0, one where gamma = 0. Then
+d x (v_t + lambda (b + C d)) = 0 is linear in lambda: one slip at most, unless both of its coefficients vanish; then
+every lambda with kappa > 0 solves the problem, from 0 to the impulse that sticks. kappa does fall to 0, for the slope
+d.(b + C d) = rho.G rho of -kappa, rho = (1, d), is positive.
 """
 
 from __future__ import annotations
