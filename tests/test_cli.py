@@ -146,13 +146,18 @@ def test_every_command_helps_with_an_example(command, capsys):
     assert "example: painleve " + command in " ".join(capsys.readouterr().out.split())
 
 
-@pytest.mark.parametrize("scene", SCENE_NAMES)
+@pytest.mark.parametrize("scene", ["slender_rod", "worn_tip_rod", "two_link_arm", "ellipse", "minimal", "bead"])
 def test_a_derivation_is_printed_in_all_three_forms(scene, capsys):
-    assert "critical_friction" in run_json(capsys, "derive", scene)["formulas"]
+    name, sentence, latex = (
+        ("critical_friction", "critical friction", r"\mu_c(q) = ")
+        if load_scene(scene).friction is not None
+        else ("gamma", "negative in the paradox", r"\gamma(q) = ")
+    )
+    assert name in run_json(capsys, "derive", scene)["formulas"]
     assert main(["derive", scene]) == 0
-    assert "critical friction" in capsys.readouterr().out
+    assert sentence in capsys.readouterr().out
     assert main(["derive", scene, "--latex"]) == 0
-    assert r"\mu_c(q) = " in capsys.readouterr().out
+    assert latex in capsys.readouterr().out
 
 
 def test_a_command_line_in_a_fresh_process_needs_no_heavy_imports_to_help():

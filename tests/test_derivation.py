@@ -194,17 +194,20 @@ def test_gamma_is_the_least_over_a_fine_grid_of_the_section_of_what_the_paper_de
     scene = load_scene(name)
     d = derive(scene)
     point = {s: sp.Rational(3 * i + 2, 7) for i, s in enumerate((*scene.q, *scene.p))}
-    M, n, H = (sp.Matrix(e).xreplace(point).evalf(30) for e in (scene.inertia, d.normal, scene.tangents))
+    tangents = sp.zeros(scene.dimension, 1) if scene.friction is None else scene.tangents
+    M, n, H = (sp.Matrix(e).xreplace(point).evalf(30) for e in (scene.inertia, d.normal, tangents))
     size = n.norm()
     values = [(n.T * M.LUsolve(n + H * s))[0] / size**2 for s in section_grid(scene.friction, point)]
     gamma = d.gamma.xreplace(point).evalf(30)
     spread = max(values) - min(values)
     # the ends of a segment are on the grid; on a circle of 2000 points the least is missed by a millionth of the spread
-    missed = 0 if scene.friction_dimension == 1 else spread * 3e-6
+    missed = 0 if scene.friction_dimension < 2 else spread * 3e-6
     assert -1e-25 * max(map(abs, values)) <= min(values) - gamma <= missed + 1e-25 * max(map(abs, values))
 
 
 def section_grid(friction, point):
+    if friction is None:
+        return [sp.zeros(1, 1)]
     if isinstance(friction, Segment):
         minus, plus = (e.xreplace(point).evalf(30) for e in (friction.minus, friction.plus))
         return [sp.Matrix([-minus + (plus + minus) * j / 10]) for j in range(11)]

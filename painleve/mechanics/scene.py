@@ -57,12 +57,18 @@ class Parameter:
 
 @dataclass(frozen=True, kw_only=True)
 class StateKey:
-    """A natural quantity by which a user gives a state; exact expressions only. No default means it must be given."""
+    """A natural quantity by which a user gives a state; exact expressions only. No default means it must be given.
+
+    `default` is a number, or a formula in other keys and the parameters; where such a formula is used, parameters are
+    what is given or their defaults, for the state is put where they say. `interval` are the ends between which the key
+    varies along a curve of states, unless others are given.
+    """
 
     name: str
     unit: str
     sentence: str
     default: str | None = None
+    interval: tuple[str, str] | None = None
 
     @property
     def symbol(self) -> sp.Symbol:
@@ -175,6 +181,7 @@ def make_scene(
     force: sp.MatrixBase | None = None,
     constraint: sp.Expr,
     tangential_displacements: Iterable[sp.Expr] = (),
+    tangents: sp.MatrixBase | None = None,
     friction: Section | None = None,
     keys: Iterable[StateKey] = (),
     placement: Mapping[str, sp.Expr] | None = None,
@@ -186,8 +193,9 @@ def make_scene(
     """Check a scene and derive M, f and H from what describes it.
 
     Give either the kinetic energy (a quadratic form in the velocities) or M, either a potential or the generalised
-    force without gyroscopic terms (default: no force); g, or minus the contact point's height; and one tangential
-    displacement of the contact point for each direction of friction.
+    force without gyroscopic terms (default: no force); g, or minus the contact point's height; and for each direction
+    of friction one tangential displacement of the contact point, or one column of H itself (d x k): H^T u is the
+    velocity of the body's material point at the contact, which has no displacement where that point changes.
 
     Raises InputError that names the symbol or the shape at fault.
     """
@@ -200,8 +208,7 @@ def make_scene(
     M = _inertia(name, kinetic_energy, inertia, q, u)
     f = sp.ImmutableMatrix(_applied_force(name, potential, force, q) + gyroscopic_force(M, q, u))
     constraint = sp.sympify(constraint, strict=True)
-    displacements = [sp.sympify(s, strict=True) for s in tangential_displacements]
-    H = sp.ImmutableMatrix(len(q), len(displacements), lambda i, j: sp.diff(displacements[j], q[i]))
+    H = _tangents(name, tangential_displacements, tangents, q)
     _check_friction(name, H, friction)
     time = sp.Symbol("t", real=True)
     _check_symbols(name, "M", M, [*q, *p])
@@ -270,6 +277,19 @@ def _applied_force(
     if force is not None:
         return sp.Matrix(force)
     return sp.Matrix([-sp.diff(potential, x) if potential is not None else 0 for x in q])
+
+
+def _tangents(
+    name: str, displacements: Iterable[sp.Expr], tangents: sp.MatrixBase | None, q: list[sp.Symbol]
+) -> sp.ImmutableMatrix:
+    displacements = [sp.sympify(s, strict=True) for s in displacements]
+    if tangents is None:
+        return sp.ImmutableMatrix(len(q), len(displacements), lambda i, j: sp.diff(displacements[j], q[i]))
+    if displacements:
+        raise InputError(f"scene {name}: give tangential displacements or their gradients H, not both")
+    if tangents.shape[0] != len(q):
+        raise InputError(f"scene {name}: H has {tangents.shape[0]} rows; it needs {len(q)}, one for each coordinate")
+    return sp.ImmutableMatrix(tangents)
 
 
 def _check_names(scene: str, names: list[str]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 import sympy as sp
 
@@ -13,6 +14,9 @@ from painleve.mechanics.parse import parse_expression
 from painleve.mechanics.scene import Coordinate, Parameter, Scene
 
 __all__ = ["Line", "as_dict", "as_latex", "as_text", "derivation_lines"]
+
+SHORT = 12  # operations of a formula that is left as it is
+LONG = 380  # and of one that is only factored: trigonometric identities would take seconds
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -144,13 +148,17 @@ def _absolute(expression: sp.Expr) -> sp.Expr:
     return sp.Abs(sp.factor_terms(expression))
 
 
+@lru_cache(maxsize=1024)
 def _short(expression: sp.Expr) -> sp.Expr:
     """The shortest of the forms that simplification offers; the given one where it is as short."""
     expression = sp.sympify(expression)
-    if expression.count_ops() < 12:
+    operations = expression.count_ops()
+    if operations < SHORT:
         return expression
     together = sp.factor(sp.together(expression))
-    forms = [expression, together, sp.trigsimp(sp.simplify(together))]
+    forms = [expression, together]
+    if operations < LONG:
+        forms.append(sp.trigsimp(sp.simplify(together)))
     return min(forms, key=_length)
 
 

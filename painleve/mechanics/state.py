@@ -84,9 +84,12 @@ def _state(
     scene: Scene, named: NamedState | None, keys: Mapping[str, Number] | None, parameters: Mapping[str, Number] | None
 ) -> State:
     given = dict(named.keys if named else {}) | dict(keys or {})
-    values, components = _sort_keys(scene, given)
-    table = resolve_parameters(scene, dict(named.parameters if named else {}) | dict(parameters or {}), values)
+    values, formulas, components = _sort_keys(scene, given)
+    chosen = dict(named.parameters if named else {}) | dict(parameters or {})
+    table = resolve_parameters(scene, chosen, None if formulas else values)
     point = values | {p.symbol: table[p.name] for p in scene.parameters}
+    for key, formula in formulas.items():
+        point[key] = exact_number(formula.xreplace(point), where=f"scene {scene.name}, state key {key} by default")
     q = _components(scene, {c.name: c.name for c in scene.coordinates}, scene.placement, point, components)
     u = _components(scene, {c.name: f"u_{c.name}" for c in scene.coordinates}, scene.velocity, point, components)
     label = _label(named.name if named else None, keys, parameters)
@@ -118,8 +121,10 @@ def resolve_parameters(
     return {p.name: table[p.name] for p in scene.parameters}
 
 
-def _sort_keys(scene: Scene, given: Mapping[str, Number]) -> tuple[dict[sp.Symbol, sp.Expr], dict[str, sp.Expr]]:
-    """Natural keys by symbol, with defaults; and raw components by name."""
+def _sort_keys(
+    scene: Scene, given: Mapping[str, Number]
+) -> tuple[dict[sp.Symbol, sp.Expr], dict[sp.Symbol, sp.Expr], dict[str, sp.Expr]]:
+    """Natural keys by symbol, with defaults; those whose default is a formula; and raw components by name."""
     raw = {c.name for c in scene.coordinates} | {f"u_{c.name}" for c in scene.coordinates}
     natural = {k.name: k for k in scene.keys}
     for name in given:
@@ -127,17 +132,20 @@ def _sort_keys(scene: Scene, given: Mapping[str, Number]) -> tuple[dict[sp.Symbo
             raise InputError(f"scene {scene.name}: no state key {name!r}; keys: {', '.join(natural)}; "
                              f"single components: {', '.join(sorted(raw - set(natural)))}")  # fmt: skip
     exact = {name: exact_number(value, where=f"state key {name}") for name, value in given.items()}
-    values = {}
+    known = {k.name: k.symbol for k in scene.keys} | {p.name: p.symbol for p in scene.parameters}
+    values: dict[sp.Symbol, sp.Expr] = {}
+    formulas: dict[sp.Symbol, sp.Expr] = {}
     for name, key in natural.items():
         if name in exact:
             values[key.symbol] = exact[name]
         elif key.default is not None:
-            values[key.symbol] = parse_expression(key.default, {}, where=f"default of {name}")
+            default = parse_expression(key.default, known, where=f"default of {name}")
+            (formulas if default.free_symbols else values)[key.symbol] = default
         else:
             raise InputError(f"scene {scene.name}: the state needs {name} ({key.sentence}, {key.unit}); "
                              f"give {name}=EXPRESSION or a named state: "
                              f"{', '.join(s.name for s in scene.states) or 'none'}")  # fmt: skip
-    return values, {name: value for name, value in exact.items() if name in raw and name not in natural}
+    return values, formulas, {name: value for name, value in exact.items() if name in raw and name not in natural}
 
 
 def _components(

@@ -94,7 +94,8 @@ def _placed(
         if key.name in keys:
             fixed[key.symbol] = exact_number(keys[key.name], where=f"state key {key.name}")
         elif key.name not in axes and key.default is not None:
-            fixed[key.symbol] = parse_expression(key.default, {}, where=f"default of {key.name}")
+            named = {p.name: fixed[p.symbol] for p in scene.parameters if p.symbol in fixed}
+            fixed[key.symbol] = parse_expression(key.default, named, where=f"default of {key.name}")
     rules = {scene.parameter(n).symbol: rule for n, rule in scene.contact_parameters.items() if n not in parameters}
     for c in scene.coordinates:
         rules[c.symbol] = scene.placement.get(c.name, sp.Integer(0))

@@ -12,7 +12,10 @@ from painleve.mechanics.scene_file import read_scene
 
 __all__ = ["SCENE_NAMES", "load_scene"]
 
-SCENE_NAMES = ("slender_rod", "worn_tip_rod", "two_link_arm", "spatial_rod")
+SCENE_NAMES = (
+    "slender_rod", "worn_tip_rod", "two_link_arm", "spatial_rod", "general_rod", "planar_body", "ellipse",
+    "rod_on_obstacle", "general_arm", "minimal", "bead",
+)  # fmt: skip
 
 
 def load_scene(name: str | Path) -> Scene:

@@ -13,15 +13,14 @@ COORDINATES = (
     Coordinate(name="theta", unit="rad", sentence="inclination; the tip is below and to the left of the centre",
                latex=r"\theta"),
 )  # fmt: skip
-BODY = (
-    Parameter(name="m", unit="kg", sentence="mass", default="1"),
-    Parameter(name="l", unit="m", sentence="half length", default="1"),
-    Parameter(name="I", unit="kg m^2", sentence="moment of inertia about the centre", default="m*l**2/3"),
-)
+MASS = Parameter(name="m", unit="kg", sentence="mass", default="1")
+LENGTH = Parameter(name="l", unit="m", sentence="half length", default="1")
+INERTIA = Parameter(name="I", unit="kg m^2", sentence="moment of inertia about the centre", default="m*l**2/3")
+BODY = (MASS, LENGTH, INERTIA)
 GRAVITY = Parameter(name="gravity", unit="m/s^2", sentence="acceleration of gravity", default="981/100",
                     range="real", latex="g_0")  # fmt: skip
 KEYS = (
-    StateKey(name="theta", unit="rad", sentence="inclination"),
+    StateKey(name="theta", unit="rad", sentence="inclination", interval=("0", "pi/2")),
     StateKey(name="slip", unit="m/s", sentence="tangential speed of the tip", default="-1"),
     StateKey(name="omega", unit="rad/s", sentence="angular velocity", default="0"),
 )
@@ -29,11 +28,12 @@ KEYS = (
 
 def make_rod(
     *, name: str, sentence: str, friction_parameters: tuple[Parameter, ...], friction_coefficient: sp.Expr,
-    states: tuple[NamedState, ...],
+    states: tuple[NamedState, ...], inertia_parameter: Parameter = INERTIA, inertia: sp.Expr = INERTIA.symbol,
 ) -> Scene:  # fmt: skip
-    """A rod on a floor with the friction coefficient given as an expression in theta and its parameters."""
+    """A rod on a floor; the friction coefficient is an expression in theta and its parameters, the moment of inertia
+    one in m, l and its parameter."""
     x, y, theta = (c.symbol for c in COORDINATES)
-    m, l, I, gravity = (p.symbol for p in (*BODY, GRAVITY))  # noqa: E741 (the field's letters)
+    m, l, gravity = (p.symbol for p in (MASS, LENGTH, GRAVITY))  # noqa: E741 (the field's letters)
     slip, omega = KEYS[1].symbol, KEYS[2].symbol
     u_x, u_y, u_theta = (c.velocity for c in COORDINATES)
     half = (l * sp.cos(theta), l * sp.sin(theta))
@@ -42,8 +42,8 @@ def make_rod(
         sentence=sentence,
         source=SOURCE,
         coordinates=COORDINATES,
-        parameters=(*BODY, *friction_parameters, GRAVITY),
-        kinetic_energy=m * (u_x**2 + u_y**2) / 2 + I * u_theta**2 / 2,
+        parameters=(MASS, LENGTH, inertia_parameter, *friction_parameters, GRAVITY),
+        kinetic_energy=m * (u_x**2 + u_y**2) / 2 + inertia * u_theta**2 / 2,
         potential=m * gravity * y,
         constraint=l * sp.sin(theta) - y,
         tangential_displacements=(x - l * sp.cos(theta),),

@@ -8,7 +8,8 @@ condition that mu_c is stationary along the table is then a quadratic equation f
 import sympy as sp
 
 from painleve.mechanics.friction import Segment
-from painleve.mechanics.scene import Coordinate, NamedState, Outline, Parameter, StateKey, make_scene
+from painleve.mechanics.library.slender_rod import GRAVITY, MU
+from painleve.mechanics.scene import Coordinate, NamedState, Outline, Parameter, Scene, StateKey, make_scene
 
 COORDINATES = (
     Coordinate(name="phi1", unit="rad", sentence="angle of the first link from the downward vertical",
@@ -16,32 +17,65 @@ COORDINATES = (
     Coordinate(name="phi2", unit="rad", sentence="angle of the second link from the downward vertical",
                latex=r"\varphi_2"),
 )  # fmt: skip
-PARAMETERS = (
-    Parameter(name="m1", unit="kg", sentence="mass of the first link, uniform", default="1", latex="m_1"),
-    Parameter(name="m2", unit="kg", sentence="mass of the second link, uniform", default="1", latex="m_2"),
+MASSES = (
+    Parameter(name="m1", unit="kg", sentence="mass of the first link", default="1", latex="m_1"),
+    Parameter(name="m2", unit="kg", sentence="mass of the second link", default="1", latex="m_2"),
+)
+LENGTHS = (
     Parameter(name="l1", unit="m", sentence="length of the first link", default="1", latex=r"\ell_1"),
     Parameter(name="l2", unit="m", sentence="length of the second link", default="1", latex=r"\ell_2"),
-    Parameter(name="depth", unit="m", sentence="depth of the table below the shoulder (default: where the tip is)",
-              default="39/20", latex="H"),
-    Parameter(name="mu", unit="1", sentence="Coulomb's coefficient of friction", default="1/2", range="nonnegative",
-              latex=r"\mu"),
-    Parameter(name="gravity", unit="m/s^2", sentence="acceleration of gravity", default="981/100", range="real",
-              latex="g_0"),
-)  # fmt: skip
+)
+DEPTH = Parameter(name="depth", unit="m", sentence="depth of the table below the shoulder (default: where the tip is)",
+                  default="39/20", latex="H")  # fmt: skip
 
 phi1, phi2 = (c.symbol for c in COORDINATES)
 u1, u2 = (c.velocity for c in COORDINATES)
-m1, m2, l1, l2, depth, mu, gravity = (p.symbol for p in PARAMETERS)
+m1, m2, l1, l2, depth, mu, gravity = (p.symbol for p in (*MASSES, *LENGTHS, DEPTH, MU, GRAVITY))
 slip = sp.Symbol("slip", real=True)
 
 # cos(phi1 - phi2), written so that rational half-angle tangents keep it rational
 cos_elbow = sp.cos(phi1) * sp.cos(phi2) + sp.sin(phi1) * sp.sin(phi2)
 sin_elbow = sp.sin(phi2) * sp.cos(phi1) - sp.cos(phi2) * sp.sin(phi1)
-first_link = m1 * (l1 * u1) ** 2 / 6
-second_link = m2 * ((l1 * u1) ** 2 + l1 * l2 * u1 * u2 * cos_elbow + (l2 * u2) ** 2 / 3) / 2
-
 elbow = (l1 * sp.sin(phi1), -l1 * sp.cos(phi1))
 tip = (elbow[0] + l2 * sp.sin(phi2), elbow[1] - l2 * sp.cos(phi2))
+
+
+def make_arm(
+    *, name: str, sentence: str, source: str, link_parameters: tuple[Parameter, ...], centres: tuple[sp.Expr, sp.Expr],
+    inertias: tuple[sp.Expr, sp.Expr], states: tuple[NamedState, ...],
+) -> Scene:  # fmt: skip
+    """An arm of two links, each with its centre of mass on the line between its joints: how far from the upper one,
+    and the moment of inertia about it, as expressions in the parameters."""
+    d1, d2 = centres
+    first_link = (m1 * d1**2 + inertias[0]) * u1**2 / 2
+    second_link = (m2 * ((l1 * u1) ** 2 + 2 * l1 * d2 * u1 * u2 * cos_elbow + (d2 * u2) ** 2) + inertias[1] * u2**2) / 2
+    return make_scene(
+        name=name,
+        sentence=sentence,
+        source=source,
+        coordinates=COORDINATES,
+        parameters=(*MASSES, *LENGTHS, *link_parameters, DEPTH, MU, GRAVITY),
+        kinetic_energy=first_link + second_link,
+        potential=-gravity * (m1 * d1 * sp.cos(phi1) + m2 * (l1 * sp.cos(phi1) + d2 * sp.cos(phi2))),
+        constraint=l1 * sp.cos(phi1) + l2 * sp.cos(phi2) - depth,
+        tangential_displacements=(l1 * sp.sin(phi1) + l2 * sp.sin(phi2),),
+        friction=Segment(minus=mu, plus=mu),
+        keys=(
+            StateKey(name="phi1", unit="rad", sentence="angle of the first link"),
+            StateKey(name="phi2", unit="rad", sentence="angle of the second link; default: not below zero, and such "
+                     "that the tip is at the depth", default="acos((depth - l1*cos(phi1))/l2)"),
+            StateKey(name="slip", unit="m/s", sentence="tangential speed of the tip", default="1"),
+        ),
+        placement={"phi1": phi1, "phi2": phi2},
+        velocity={
+            "phi1": slip * sp.sin(phi2) / (l1 * sin_elbow),
+            "phi2": -slip * sp.sin(phi1) / (l2 * sin_elbow),
+        },
+        contact_parameters={"depth": l1 * sp.cos(phi1) + l2 * sp.cos(phi2)},
+        outline=Outline(points=((sp.Integer(0), sp.Integer(0)), elbow, tip), floor=-depth),
+        states=states,
+    )  # fmt: skip
+
 
 # tan(phi1/2) = -1/12, tan(phi2/2) = 1/7: a local maximum of mu_c along the table
 MAXIMUM = {"phi1": "-atan(24/143)", "phi2": "atan(7/24)", "slip": "1577*sqrt(55609)/278045"}
@@ -52,29 +86,13 @@ MINIMUM = {"phi1": "-atan(3/4)", "phi2": "atan(16/63)", "slip": "253*sqrt(1777)/
 MINIMUM_MASS = "(1525508383 - 23*sqrt(401384073317041))/1002713763"
 MINIMUM_FRICTION = "(382459321 - sqrt(401384073317041))/339943500"
 
-SCENE = make_scene(
+SCENE = make_arm(
     name="two_link_arm",
     sentence="two uniform links hanging from a shoulder, the tip sliding on a table with constant friction",
     source="the paper's second case of Theorem 1 in a plain mechanism; derived for this project",
-    coordinates=COORDINATES,
-    parameters=PARAMETERS,
-    kinetic_energy=first_link + second_link,
-    potential=-gravity * (m1 * l1 * sp.cos(phi1) / 2 + m2 * (l1 * sp.cos(phi1) + l2 * sp.cos(phi2) / 2)),
-    constraint=l1 * sp.cos(phi1) + l2 * sp.cos(phi2) - depth,
-    tangential_displacements=(l1 * sp.sin(phi1) + l2 * sp.sin(phi2),),
-    friction=Segment(minus=mu, plus=mu),
-    keys=(
-        StateKey(name="phi1", unit="rad", sentence="angle of the first link"),
-        StateKey(name="phi2", unit="rad", sentence="angle of the second link"),
-        StateKey(name="slip", unit="m/s", sentence="tangential speed of the tip", default="1"),
-    ),
-    placement={"phi1": phi1, "phi2": phi2},
-    velocity={
-        "phi1": slip * sp.sin(phi2) / (l1 * sin_elbow),
-        "phi2": -slip * sp.sin(phi1) / (l2 * sin_elbow),
-    },
-    contact_parameters={"depth": l1 * sp.cos(phi1) + l2 * sp.cos(phi2)},
-    outline=Outline(points=((sp.Integer(0), sp.Integer(0)), elbow, tip), floor=-depth),
+    link_parameters=(),
+    centres=(l1 / 2, l2 / 2),
+    inertias=(m1 * l1**2 / 12, m2 * l2**2 / 12),
     states=(
         NamedState(name="sliding", sentence="gamma > 0: ordinary sliding, nothing is indeterminate",
                    keys=MAXIMUM, parameters={"mu": "1/2"}),
