@@ -16,8 +16,7 @@ Command:  painleve study convergence [--quick]
 Expected: order 1 within the errors stated for all fixed-step schemes and motions. The event-driven method is exact to
           rounding on the point mass. The compliant contact (damping ratio 1) converges with order 1 where there is no
           collision; after a collision it rebounds with exp(-2) = 0.135 of the speed, at any stiffness: its limit is
-          another law of impact, and its error does not fall. On `arm_stick` the event-driven method at rtol 1e-6
-          chatters at the stop and ends with too many events: drawn as a run that ended early.
+          another law of impact, and its error does not fall.
 Time:     two to three minutes, with --quick half a minute; half a minute more where the scenes are not yet compiled.
 Files:    convergence.h5, .pdf and .png.
 """

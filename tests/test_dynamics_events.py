@@ -137,6 +137,32 @@ def test_a_slip_that_ends_sticks_and_stays() -> None:
     assert found.r[:, 1].sum() == pytest.approx(-2.0, rel=1e-9)
 
 
+@pytest.mark.parametrize("exponent", range(4, 13))
+def test_a_slip_on_a_curved_constraint_ends_in_sticking_at_every_tolerance(exponent: int) -> None:
+    """What the arc has drifted off the constraint, of the size of the tolerance, is no lift-off."""
+    keys = {"phi1": "-1/2", "phi2": "3/5", "slip": "-1"}
+    state = make_state(load_scene("two_link_arm"), keys=keys, parameters={"mu": "2/5"})
+    rtol = 10.0**-exponent
+    options = {"rtol": rtol, "atol": 1e-2 * rtol}
+    found = simulate(state, scheme="event_driven", step=0.1, until=0.6, options=options)
+    tight = simulate(state, scheme="event_driven", step=0.1, until=0.6, options={"rtol": 1e-13, "atol": 1e-15})
+    assert found.ending is Ending.REACHED_END
+    assert set(found.branch[1:]) == {Branch.SLIP_PLUS, Branch.STICK}
+    assert np.abs(found.q[-1] - tight.q[-1]).max() < 100 * rtol
+    assert np.abs(found.u[-1]).max() < 1e-12
+
+
+def test_a_hop_far_shorter_than_a_step_lands_where_the_parabola_does() -> None:
+    start = make_start(block(), q={"x": 0, "y": 0}, u={"x": 1, "y": "1e-9"}, parameters={"weight": 10, "mu": "1/4"})
+    found = simulate(start, scheme="event_driven", step=0.1, until=0.2)
+    assert found.ending is Ending.REACHED_END
+    (jump,) = found.jumps
+    assert jump.kind is Change.FRICTIONAL_IMPACT
+    assert jump.time == pytest.approx(2 * 1e-9 / 10, rel=1e-6)
+    assert found.u[-1, 0] == pytest.approx(1 - 0.25 * 5 * 0.2, rel=1e-8)
+    assert found.q[-1, 1] == pytest.approx(0.0, abs=1e-15)
+
+
 def test_a_rod_falls_hits_and_slides_in_closed_form() -> None:
     start = make_start(ROD, q={"x": 0, "y": 2, "theta": "pi/4"}, u={"x": -1}, parameters={"mu": "1/2"})
     found = simulate(start, scheme="event_driven", step=0.1, until=0.55)

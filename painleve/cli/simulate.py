@@ -13,6 +13,8 @@ from painleve.errors import InputError
 if TYPE_CHECKING:
     from painleve.dynamics.trajectory import Trajectory
 
+BAR = "{percentage:3.0f}%|{bar}| t = {n:.3g} of {total:.3g} s [{elapsed}<{remaining}]"
+
 
 def register(commands: Any) -> None:
     parser = add_command(
@@ -25,15 +27,19 @@ def register(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
+    from tqdm import tqdm
+
     from painleve.core.motion_codes import Ending
     from painleve.dynamics.simulate import simulate
     from painleve.store import check_writable, save
 
     target = options.output and check_writable(options.output)
-    trajectory = simulate(
-        read_start(options), scheme=options.scheme, step=options.step, until=options.until,
-        contact_tolerance=options.contact_tolerance, options=read_options(options),
-    )  # fmt: skip
+    with tqdm(total=options.until, bar_format=BAR, leave=False, delay=1.0, disable=None) as bar:
+        trajectory = simulate(
+            read_start(options), scheme=options.scheme, step=options.step, until=options.until,
+            contact_tolerance=options.contact_tolerance, options=read_options(options),
+            progress=lambda covered: bar.update(min(covered, bar.total - bar.n)),
+        )  # fmt: skip
     if trajectory.ending is Ending.NOT_FINITE:
         raise InputError(f"{trajectory.sentence}; after {trajectory.steps} steps, at t = {trajectory.t[-1]:.6g}")
     if target is not None:

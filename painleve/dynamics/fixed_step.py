@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from painleve.core.codes import Branch
@@ -16,9 +18,13 @@ CHUNK = 100_000  # steps: some ten milliseconds
 
 
 def run_fixed_step(
-    name: str, code: int, theta: float, lag: float, start: Start, grid: Grid, tolerance: float
-) -> Trajectory:
-    """Step through the grid with the compiled scheme of that code, to its end or to the first step that fails."""
+    name: str, code: int, theta: float, lag: float, start: Start, grid: Grid, tolerance: float,
+    progress: Callable[[float], None],
+) -> Trajectory:  # fmt: skip
+    """Step through the grid with the compiled scheme of that code, to its end or to the first step that fails.
+
+    `progress` hears of the time covered after each chunk; the steps do not depend on how they are cut into chunks.
+    """
     n, d = len(grid.h), start.scene.dimension
     q, u, r = np.zeros((n + 1, d)), np.zeros((n + 1, d)), np.zeros((n + 1, 2))
     branch, change, several = (np.zeros(n + 1, np.int8) for _ in range(3))
@@ -33,6 +39,7 @@ def run_fixed_step(
                 change[rest], several[rest],
             )  # fmt: skip
             done, ending = done + taken, Ending(status)
+            progress(float(grid.t[done] - grid.t[done - taken]))
     except KeyboardInterrupt:
         ending = Ending.INTERRUPTED
     kept = slice(0, done + 1)

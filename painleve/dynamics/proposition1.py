@@ -5,6 +5,7 @@ The impulse r = M(u_{i+1} - u_i) - h f is formed anew from the trajectory, not t
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,6 +32,11 @@ class Proposition1:
     dissipation: np.ndarray
     norm_bound: np.ndarray
 
+    @property
+    def count(self) -> int:
+        """Steps that were checked: all of them, or the first ones where it was interrupted."""
+        return len(self.membership)
+
     def worst(self, name: str) -> tuple[float, int]:
         """The largest margin of that name and the index of the instant at which its step ends."""
         values = getattr(self, name)
@@ -51,12 +57,16 @@ class Proposition1:
 def check_proposition1(
     start: Start, t: np.ndarray, h: np.ndarray, q: np.ndarray, u: np.ndarray, tolerance: float
 ) -> Proposition1:
-    """Margins of the steps from row i to row i + 1. t: (n + 1,), h: (n,), q, u: (n + 1, d)."""
-    parts = []
-    for i in range(0, len(h), BLOCK):
-        old, new = slice(i, min(i + BLOCK, len(h))), slice(i + 1, min(i + BLOCK, len(h)) + 1)
-        with np.errstate(over="ignore", invalid="ignore"):  # a motion that leaves the numbers has no margins
-            parts.append(_margins(start, t[new], h[old], q[new], u[old], u[new], tolerance))
+    """Margins of the steps from row i to row i + 1. t: (n + 1,), h: (n,), q, u: (n + 1, d).
+
+    Ctrl-C ends it with those of the steps until then.
+    """
+    parts: list[np.ndarray] = []
+    with contextlib.suppress(KeyboardInterrupt):
+        for i in range(0, len(h), BLOCK):
+            old, new = slice(i, min(i + BLOCK, len(h))), slice(i + 1, min(i + BLOCK, len(h)) + 1)
+            with np.errstate(over="ignore", invalid="ignore"):  # a motion that leaves the numbers has no margins
+                parts.append(_margins(start, t[new], h[old], q[new], u[old], u[new], tolerance))
     table = np.concatenate(parts, axis=1) if parts else np.empty((3, 0))
     return Proposition1(**dict(zip(MARGINS, table, strict=True)))
 

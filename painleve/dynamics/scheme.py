@@ -12,7 +12,9 @@ from painleve.dynamics.start import Start
 from painleve.dynamics.trajectory import Trajectory
 from painleve.errors import InputError
 
-__all__ = ["Integrated", "Scheme", "Stepped"]
+__all__ = ["Integrated", "Progress", "Scheme", "Stepped"]
+
+Progress = Callable[[float], None]  # hears of the time (s) covered since it was last called
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,7 +31,9 @@ class Scheme:
     tests_contact: bool = True
     options: Mapping[str, float] = field(default_factory=dict)
 
-    def run(self, start: Start, grid: Grid, tolerance: float, options: Mapping[str, float]) -> Trajectory:
+    def run(
+        self, start: Start, grid: Grid, tolerance: float, options: Mapping[str, float], progress: Progress
+    ) -> Trajectory:
         raise NotImplementedError
 
     def settings(self, tolerance: float, given: Mapping[str, float] | None) -> dict[str, float]:
@@ -59,17 +63,21 @@ class Stepped(Scheme):
             raise InputError(f"scheme {self.name}: theta = {theta} must be between 0 and 1")
         return theta
 
-    def run(self, start: Start, grid: Grid, tolerance: float, options: Mapping[str, float]) -> Trajectory:
+    def run(
+        self, start: Start, grid: Grid, tolerance: float, options: Mapping[str, float], progress: Progress
+    ) -> Trajectory:
         theta = self.theta(options)
-        return run_fixed_step(self.name, int(self.code), theta, self.lag(theta), start, grid, tolerance)
+        return run_fixed_step(self.name, int(self.code), theta, self.lag(theta), start, grid, tolerance, progress)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Integrated(Scheme):
     """A method on top of an adaptive integrator; the grid says where the trajectory is recorded."""
 
-    integrate: Callable[[Start, Grid, Mapping[str, float]], Trajectory]
+    integrate: Callable[[Start, Grid, Mapping[str, float], Progress], Trajectory]
     tests_contact: bool = False
 
-    def run(self, start: Start, grid: Grid, tolerance: float, options: Mapping[str, float]) -> Trajectory:
-        return self.integrate(start, grid, options)
+    def run(
+        self, start: Start, grid: Grid, tolerance: float, options: Mapping[str, float], progress: Progress
+    ) -> Trajectory:
+        return self.integrate(start, grid, options, progress)

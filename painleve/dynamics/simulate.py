@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from painleve.core.motion_codes import Ending
 from painleve.dynamics.grid import make_grid
 from painleve.dynamics.proposition1 import check_proposition1
 from painleve.dynamics.schemes import load_scheme
@@ -26,20 +27,29 @@ def simulate(
     contact_tolerance: float = 0.0,
     options: Mapping[str, float] | None = None,
     monitor: bool = True,
+    progress: Callable[[float], None] | None = None,
 ) -> Trajectory:
     """The trajectory from `start` over the time `until`, by the scheme of that name with constant or given steps.
 
     Contact is where g(q) >= -contact_tolerance; 0 is the paper's test. `monitor` adds the margins of Proposition 1,
-    which is about the scheme contact_dynamics. A method that cannot go on ends with a value that says why, and Ctrl-C
-    ends it with what there is. Raises InputError for bad input.
+    which is about the scheme contact_dynamics. `progress` hears, now and then, of the time (s) covered since its last
+    call. A method that cannot go on ends with a value that says why, and Ctrl-C ends it with what there is. Raises
+    InputError for bad input.
     """
     method, beginning = load_scheme(scheme), as_start(start)
     settings = method.settings(contact_tolerance, options)
     grid = make_grid(beginning.t, step, until)
-    result = method.run(beginning, grid, contact_tolerance, settings)
+    result = method.run(beginning, grid, contact_tolerance, settings, progress or _ignore)
     if not monitor or scheme != "contact_dynamics":
         return result
     margins = check_proposition1(
         beginning, result.t, grid.h[: result.steps], result.q, result.u, contact_tolerance
     )  # fmt: skip
+    if margins.count < result.steps:
+        detail = f"Proposition 1 was checked for the first {margins.count} steps"
+        result = replace(result, ending=Ending.INTERRUPTED, detail=detail)
     return replace(result, proposition1=margins)
+
+
+def _ignore(covered: float) -> None:
+    """Progress that nobody watches."""

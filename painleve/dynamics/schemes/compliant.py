@@ -10,23 +10,23 @@ and of closed contact are integrated apart. Stiff; Radau IIA of scipy, order 5.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
-from scipy.integrate import solve_ivp
+from scipy.integrate import Radau
 
 from painleve.core.codes import Branch
 from painleve.core.motion_codes import Ending
+from painleve.dynamics.arc import Dense, Place, follow
 from painleve.dynamics.grid import Grid
 from painleve.dynamics.modes import ContactPoint
 from painleve.dynamics.recorder import Recorder
-from painleve.dynamics.scheme import Integrated
+from painleve.dynamics.scheme import Integrated, Progress
 from painleve.dynamics.start import Start
 from painleve.dynamics.trajectory import Trajectory
 from painleve.errors import InputError
 
 NAME = "compliant"
-WINDOWS = 100  # the grid is integrated in parts, so that an interrupted run keeps those that are done
 MOST_ARCS = 100_000
 
 
@@ -46,13 +46,13 @@ def contact_force(point: ContactPoint, options: Mapping[str, float]) -> tuple[fl
 
 
 class _Run:
-    """One integration: arcs of open and of closed contact, in windows of the grid."""
+    """One integration: arcs of open and of closed contact."""
 
-    def __init__(self, start: Start, grid: Grid, options: Mapping[str, float]) -> None:
-        self.start, self.grid, self.options, self.d = start, grid, options, len(start.q)
+    def __init__(self, start: Start, grid: Grid, options: Mapping[str, float], progress: Progress) -> None:
+        self.start, self.grid, self.options, self.progress, self.d = start, grid, options, progress, len(start.q)
         self.recorder, self.evaluations, self.arcs = Recorder(start), 0, 0
-        self.t, self.y = start.t, self.recorder.last
-        self.closed = self.closure(self.t, self.y) > 0.0
+        self.place = self.recorder.last
+        self.closed = self.closure(*self.place) > 0.0
         self.longest = float(grid.h.max()) if len(grid.h) else math.inf
 
     def point(self, t: float, y: np.ndarray) -> ContactPoint:
@@ -71,54 +71,51 @@ class _Run:
     def go(self) -> Trajectory:
         ending, detail = Ending.REACHED_END, ""
         try:
-            for last in np.unique(np.linspace(0, len(self.grid.h), WINDOWS + 1).astype(int))[1:]:
-                while self.t < self.grid.t[last] and ending is Ending.REACHED_END:
-                    ending = self.arc(float(self.grid.t[last]))
+            while self.place.t < self.grid.t[-1] and ending is Ending.REACHED_END:
+                ending = self.arc()
         except KeyboardInterrupt:
             ending = Ending.INTERRUPTED
+        if self.place.t > self.recorder.last.t:
+            self.record(np.array([self.place.t]), self.place.y[None, :])
         if ending is Ending.STEP_SIZE_UNDERFLOW:
-            detail = f"at t = {self.t:.9g}"
+            detail = f"at t = {self.place.t:.9g}"
         counts = {"evaluations": self.evaluations, "arcs": self.arcs}
         return self.recorder.trajectory(NAME, dict(self.options), ending, detail, counts)
 
-    def arc(self, end: float) -> Ending:
-        """Integrate until the contact opens or closes, or to the end; record the grid's instants on the way."""
-        event = _switch(self.closure, -1 if self.closed else 1)
-        inside = self.grid.t[(self.grid.t > self.t) & (self.grid.t <= end)]
+    def arc(self) -> Ending:
+        """Integrate until the contact opens or closes, or to the end."""
+        sign = 1.0 if self.closed else -1.0
         with np.errstate(all="ignore"):
-            solution = solve_ivp(
-                self.rate, (self.t, end), self.y, method="Radau", dense_output=True, events=event,
-                rtol=self.options["rtol"], atol=self.options["atol"], max_step=self.longest,
+            solver = Radau(
+                self.rate, self.place.t, self.place.y, float(self.grid.t[-1]), rtol=self.options["rtol"],
+                atol=self.options["atol"], max_step=self.longest,
             )  # fmt: skip
-        self.evaluations, self.arcs = self.evaluations + int(solution.nfev), self.arcs + 1
-        before, self.t, self.y = self.recorder.last, float(solution.t[-1]), solution.y[:, -1]
-        inside = inside[inside <= self.t]
-        if len(inside):
-            y = solution.sol(inside).T
-            self.recorder.add(inside, y, _branches(self.start, inside, y, before, self.options))
-        if solution.status < 0:
+            switched = follow(solver, [lambda t, y: sign * self.closure(t, y)], self.accept)
+        self.evaluations, self.arcs = self.evaluations + int(solver.nfev), self.arcs + 1
+        if solver.status == "failed":
             return Ending.STEP_SIZE_UNDERFLOW
-        if solution.status == 1:
+        if switched is not None:
             self.closed = not self.closed
         return Ending.REACHED_END if self.arcs <= MOST_ARCS else Ending.TOO_MANY_EVENTS
 
+    def accept(self, place: Place, dense: Dense) -> None:
+        """The grid's instants within a step; the state moves to its end."""
+        inside = self.recorder.passed(self.grid, place.t)
+        if len(inside):
+            self.record(inside, dense(inside).T)
+        before, self.place = self.place, place
+        self.progress(place.t - before.t)
 
-def _switch(function: Callable[[float, np.ndarray], float], direction: int) -> Callable[[float, np.ndarray], float]:
-    """An event of its own: the integrator reads attributes, which a method cannot carry."""
-
-    def event(t: float, y: np.ndarray) -> float:
-        return function(t, y)
-
-    event.terminal, event.direction = True, direction  # type: ignore[attr-defined]
-    return event
+    def record(self, t: np.ndarray, y: np.ndarray) -> None:
+        self.recorder.add(t, y, _branches(self.start, t, y, self.recorder.last.y, self.options))
 
 
-def integrate(start: Start, grid: Grid, options: Mapping[str, float]) -> Trajectory:
+def integrate(start: Start, grid: Grid, options: Mapping[str, float], progress: Progress) -> Trajectory:
     """The trajectory on the grid's instants."""
     for name, value in options.items():
         if not (math.isfinite(value) and value > 0.0):
             raise InputError(f"scheme {NAME}: {name} = {value} must be a positive number")
-    return _Run(start, grid, options).go()
+    return _Run(start, grid, options, progress).go()
 
 
 def _branches(

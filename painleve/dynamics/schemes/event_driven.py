@@ -11,22 +11,22 @@ import math
 from collections.abc import Callable, Mapping
 
 import numpy as np
-from scipy.integrate import solve_ivp
+from scipy.integrate import DOP853
 
 from painleve.core.codes import Branch
 from painleve.core.motion_codes import Change, Ending
 from painleve.core.steps import contact_problem
+from painleve.dynamics.arc import Dense, Event, Place, follow
 from painleve.dynamics.grid import Grid
 from painleve.dynamics.modes import ContactPoint, Mode, closed_modes
 from painleve.dynamics.recorder import Recorder
-from painleve.dynamics.scheme import Integrated
+from painleve.dynamics.scheme import Integrated, Progress
 from painleve.dynamics.start import Start
 from painleve.dynamics.trajectory import Trajectory
 
 NAME = "event_driven"
 MOST_EVENTS = 10_000
 ROUNDING = 1e-11  # relative to 1 + |u|: velocities of the tip below this are zero when a mode is chosen
-Event = Callable[[float, np.ndarray], float]
 
 
 class _Stop(Exception):
@@ -40,10 +40,18 @@ class _Stop(Exception):
 class _Run:
     """One integration: the state moves from arc to arc."""
 
-    def __init__(self, start: Start, grid: Grid, options: Mapping[str, float]) -> None:
-        self.start, self.grid, self.options = start, grid, options
-        self.d, self.t, self.recorder, self.events = len(start.q), start.t, Recorder(start), 0
-        self.y = self.recorder.last
+    def __init__(self, start: Start, grid: Grid, options: Mapping[str, float], progress: Progress) -> None:
+        self.start, self.grid, self.options, self.progress = start, grid, options, progress
+        self.d, self.recorder, self.events = len(start.q), Recorder(start), 0
+        self.place, self.mode = self.recorder.last, Mode.FREE
+
+    @property
+    def t(self) -> float:
+        return self.place.t
+
+    @property
+    def y(self) -> np.ndarray:
+        return self.place.y
 
     def point(self, t: float, y: np.ndarray) -> ContactPoint:
         return ContactPoint.at(self.start, t, y[: self.d], y[self.d : 2 * self.d])
@@ -51,48 +59,66 @@ class _Run:
     def go(self) -> Trajectory:
         ending, detail = Ending.REACHED_END, ""
         try:
-            touching = self.start.rows[0] >= -self.start.rounding
-            mode = self.after_contact() if touching else Mode.FREE
+            if self.start.rows[0] >= -self.start.rounding:
+                self.mode = self.after_contact()
             while self.t < self.grid.t[-1]:
                 if self.events > MOST_EVENTS:
                     raise _Stop(Ending.TOO_MANY_EVENTS, f"{MOST_EVENTS}")
-                mode = self.arc(mode)
+                self.mode = self.arc(self.mode)
                 self.events += 1
         except _Stop as stop:
             ending, detail = stop.ending, stop.detail
         except KeyboardInterrupt:
             ending = Ending.INTERRUPTED
+        if self.t > self.recorder.last.t:
+            self.record_here()
         return self.recorder.trajectory(NAME, dict(self.options), ending, detail, {"events": self.events})
 
     def arc(self, mode: Mode) -> Mode:
         """Integrate to the next event or the end; returns the next mode."""
-        events = self.mode_events(mode)
+        events, end = self.mode_events(mode), float(self.grid.t[-1])
         with np.errstate(all="ignore"):
-            solution = solve_ivp(
-                lambda t, y: self.rate(t, y, mode), (self.t, self.grid.t[-1]), self.y, method="DOP853",
-                events=list(events), dense_output=True, rtol=self.options["rtol"], atol=self.options["atol"],
+            solver = DOP853(
+                lambda t, y: self.rate(t, y, mode), self.t, self.y, end, rtol=self.options["rtol"],
+                atol=self.options["atol"], first_step=self.first_step(mode, end),
             )  # fmt: skip
-        self.record(solution, mode)
-        if solution.status < 0:
+            happened = follow(solver, list(events), self.accept)
+        self.record_here()
+        if solver.status == "failed":
             raise _Stop(Ending.STEP_SIZE_UNDERFLOW, f"at t = {self.t:.9g}, {mode.label}")
-        if solution.status == 0:
-            return mode
-        happened = next(e for e, times in zip(events, solution.t_events, strict=True) if len(times))
-        return events[happened]()
+        return mode if happened is None else list(events.values())[happened]()
+
+    def first_step(self, mode: Mode, end: float) -> float | None:
+        """Where the tip only hops, no longer than to the top of the hop; None leaves it to the integrator.
+
+        A first step beyond the whole hop would end below the floor, and the landing would be found at the take-off.
+        """
+        point = self.point(self.t, self.y)
+        if mode is not Mode.FREE or not (point.v_n > 0.0 > point.beta_n):
+            return None
+        return min(point.v_n / -point.beta_n, end - self.t)
 
     def rate(self, t: float, y: np.ndarray, mode: Mode) -> np.ndarray:
         point = self.point(t, y)
         force = point.force(mode)
         return np.concatenate([y[self.d : 2 * self.d], point.acceleration + point.response(*force), force])
 
-    def record(self, solution: object, mode: Mode) -> None:
-        """The grid's instants within the arc and its end; the state moves there."""
-        end, y_end = solution.t[-1], solution.y[:, -1]  # type: ignore[attr-defined]
-        inside = self.grid.t[(self.grid.t > self.t) & (self.grid.t < end)]
+    def accept(self, place: Place, dense: Dense) -> None:
+        """The grid's instants within a step; the state moves to its end."""
+        inside = self.recorder.passed(self.grid, place.t)
         if len(inside):
-            self.recorder.add(inside, solution.sol(inside).T, np.full(len(inside), mode))  # type: ignore[attr-defined]
-        self.recorder.add(np.array([end]), y_end[None, :], np.array([mode]))
-        self.t, self.y = float(end), y_end
+            self.recorder.add(inside, dense(inside).T, np.full(len(inside), self.mode))
+        before, self.place = self.place, place
+        self.progress(place.t - before.t)
+
+    def record_here(self) -> None:
+        self.recorder.add(np.array([self.t]), self.y[None, :], np.array([self.mode]))
+
+    def push(self, normal: float, tangential: float) -> None:
+        """Change the velocity by an impulse at the contact."""
+        y = self.y.copy()
+        y[self.d : 2 * self.d] += self.point(self.t, y).response(normal, tangential)
+        self.place = Place(self.t, y)
 
     def mode_events(self, mode: Mode) -> dict[Event, Callable[[], Mode]]:
         """Functions that fall through zero when a mode ends, and what follows."""
@@ -100,22 +126,22 @@ class _Run:
             # A tip that leaves the contact may stand above g = 0 by the drift of the arcs before: it meets the floor
             # again where it left it. A test of g = 0 would never see it come back.
             level = max(0.0, self.point(self.t, self.y).rows[0])
-            return {_falling(lambda t, y: level - self.point(t, y).rows[0]): self.after_contact}
-        force = {_falling(lambda t, y: self.point(t, y).force(mode)[0]): lambda: Mode.FREE}
+            return {lambda t, y: level - self.point(t, y).rows[0]: self.after_contact}
+        force: dict[Event, Callable[[], Mode]] = {lambda t, y: self.point(t, y).force(mode)[0]: self.lift_off}
         if mode is Mode.FRICTIONLESS:
             return force
         if mode is Mode.STICK:
             return {**force, **self.edge_event(Mode.SLIP_PLUS), **self.edge_event(Mode.SLIP_MINUS)}
         sign = 1.0 if mode is Mode.SLIP_MINUS else -1.0
         return {
-            _falling(lambda t, y: sign * self.point(t, y).v_t): self.after_contact,
-            _falling(lambda t, y: -self.point(t, y).beta_n): lambda: Mode.FREE,
-            _falling(lambda t, y: self.point(t, y).edge(mode)): self.lose_edge,
+            lambda t, y: sign * self.point(t, y).v_t: self.end_slip,
+            lambda t, y: -self.point(t, y).beta_n: self.lift_off,
+            lambda t, y: self.point(t, y).edge(mode): self.lose_edge,
         }
 
     def edge_event(self, side: Mode) -> dict[Event, Callable[[], Mode]]:
         """Sticking ends when its force reaches an edge of the cone."""
-        return {_falling(lambda t, y: self.reserve(t, y, side)): lambda: self.begin_slip(side)}
+        return {lambda t, y: self.reserve(t, y, side): lambda: self.begin_slip(side)}
 
     def reserve(self, t: float, y: np.ndarray, side: Mode) -> float:
         """How far the sticking force is from an edge of the cone."""
@@ -133,7 +159,7 @@ class _Run:
         raise _Stop(Ending.INCONSISTENT, f"the contact force of the slip grows without bound at t = {self.t:.9g}")
 
     def after_contact(self) -> Mode:
-        """The mode after an impact, at the end of a slip, or at the start; impacts and rounding are projected out."""
+        """The mode at a landing or at the start; impacts and rounding are projected out."""
         point = self.point(self.t, self.y)
         small = ROUNDING * (1.0 + float(np.abs(self.y[self.d : 2 * self.d]).sum()))
         if point.v_n > small:
@@ -142,20 +168,28 @@ class _Run:
         if point.v_n < -small:
             slip = self.impact(point)
         elif slip == 0 and point.planar:
-            self.hold(point)
+            self.push(*point.stopping_impulse())
         return self.choose(slip)
 
-    def hold(self, point: ContactPoint) -> None:
-        """A tip that comes to rest is at rest: its rounded velocity is taken away."""
-        self.y = self.y.copy()
-        self.y[self.d : 2 * self.d] += point.response(*point.stopping_impulse())
+    def end_slip(self) -> Mode:
+        """A tip that comes to rest is at rest: what is left of its velocity is rounding, and the drift of the arc.
+
+        Left there, a drift away from the floor, of the size of the tolerance, would pass for a lift-off.
+        """
+        self.push(*self.point(self.t, self.y).stopping_impulse())
+        return self.choose(0)
+
+    def lift_off(self) -> Mode:
+        """A contact opens with v_n = 0; the drift of the arc is taken away here too."""
+        point = self.point(self.t, self.y)
+        self.push(-point.v_n / point.a, 0.0)
+        return Mode.FREE
 
     def impact(self, point: ContactPoint) -> int:
         """u+ = S(q, u-); returns the sign of the slip that is left."""
         normal, tangential, code = contact_problem(point.rows, point.d, point.planar, point.v_n, point.v_t, 0.0)
-        self.y = self.y.copy()
-        self.y[self.d : 2 * self.d] += point.response(normal, tangential)
-        self.y[2 * self.d :] += normal, tangential
+        self.push(normal, tangential)
+        self.place.y[2 * self.d :] += normal, tangential
         change = Change.FRICTIONAL_IMPACT if point.planar else Change.IMPACT
         self.recorder.add(np.array([self.t]), self.y[None, :], np.array([code]), change)
         return {Branch.SLIP_PLUS: -1, Branch.SLIP_MINUS: 1}.get(Branch(code), 0)
@@ -172,15 +206,9 @@ class _Run:
         return modes[0]
 
 
-def _falling(function: Event) -> Event:
-    """An event that ends the arc where the function falls through zero."""
-    function.terminal, function.direction = True, -1  # type: ignore[attr-defined]
-    return function
-
-
-def integrate(start: Start, grid: Grid, options: Mapping[str, float]) -> Trajectory:
+def integrate(start: Start, grid: Grid, options: Mapping[str, float], progress: Progress) -> Trajectory:
     """The trajectory on the grid's instants and at every event."""
-    return _Run(start, grid, options).go()
+    return _Run(start, grid, options, progress).go()
 
 
 SCHEME = Integrated(
