@@ -1,0 +1,87 @@
+"""Moreau's contact law S in space with a convex polygon for the friction section, one point at a time (paper, law (7);
+the project's notes, section 2).
+
+The impulses are sums of x_i (1, s_i) with x_i >= 0 over the vertices s_i; those that cancel the normal velocity have
+sum x_i p_i = nu = -v_n, where p_i = a + b.s_i. In the plane of r_t they fill a convex polygon, unbounded where some p_i
+is not positive: two neighbours span a segment of its boundary if both p are positive, a ray if one is, else nothing.
+"""
+
+from math import inf
+
+from painleve._jit import jit
+from painleve.core.codes import Branch
+from painleve.core.tangent_plane import is_definite, made_definite, sticking_point, tangent_energy
+
+FREE, STICK, SLIP = int(Branch.FREE), int(Branch.STICK), int(Branch.SLIP)
+
+
+@jit
+def polygon_impulse(a, b_1, b_2, C_11, C_12, C_22, vertices, p, v_n, v_1, v_2):
+    """(r_n, r_1, r_2, branch) of law (7) with a polygon for a section; no impulse where v_n >= 0.
+
+    `vertices` (n, 2), counterclockwise with 0 inside or on the edge; a segment and a point are polygons too. `p` (n,):
+    a + b.s_i, taken as given, so that no rounding hides a sign.
+    """
+    if v_n >= 0.0:
+        return 0.0, 0.0, 0.0, FREE
+    nu = -v_n
+    Q_11, Q_12, Q_22, w_1, w_2 = tangent_energy(a, b_1, b_2, C_11, C_12, C_22, nu, v_1, v_2)
+    if not is_definite(Q_11, Q_12, Q_22):
+        Q_11, Q_12, Q_22, w_1, w_2 = made_definite(Q_11, Q_12, Q_22, w_1, w_2, C_11, C_22)
+    X, Y, W = sticking_point(Q_11, Q_12, Q_22, w_1, w_2)
+    if sticks(vertices, p, nu, X, Y, W):
+        r_1, r_2 = X / W, Y / W
+        return (nu - b_1 * r_1 - b_2 * r_2) / a, r_1, r_2, STICK
+    return nearest_on_boundary(vertices, p, Q_11, Q_12, Q_22, w_1, w_2, nu, X, Y, W)
+
+
+@jit
+def depth(vertices, p, i, j, nu, X, Y, W):
+    """W times the determinant of (p_i, s_i), (p_j, s_j), (nu, r): positive inside the edge from s_i to s_j."""
+    s_1, s_2, z_1, z_2 = vertices[i, 0], vertices[i, 1], vertices[j, 0], vertices[j, 1]
+    return nu * W * (s_1 * z_2 - s_2 * z_1) + p[i] * (z_1 * Y - z_2 * X) - p[j] * (s_1 * Y - s_2 * X)
+
+
+@jit
+def sticks(vertices, p, nu, X, Y, W):
+    """Whether the sticking impulse is in the cone; a section without area is left to the search on its edges."""
+    n, inner = len(p), 0
+    for i in range(n):
+        inside = depth(vertices, p, i, (i + 1) % n, nu, X, Y, W)
+        if inside < 0.0:
+            return False
+        if inside > 0.0:
+            inner += 1
+    return inner > 0
+
+
+@jit
+def nearest_on_boundary(vertices, p, Q_11, Q_12, Q_22, w_1, w_2, nu, X, Y, W):
+    """(r_n, r_1, r_2, branch) of the point of least energy on the visible edges, or where there are none on all."""
+    n = len(p)
+    best_n, best_1, best_2, found, branch = 0.0, 0.0, 0.0, False, SLIP
+    for k in range(n):
+        i, j = k, (k + 1) % n
+        outside = depth(vertices, p, i, j, nu, X, Y, W)
+        if p[j] > p[i]:
+            i, j = j, i
+        if outside > 0.0 or p[i] <= 0.0:
+            continue
+        s_1, s_2, z_1, z_2 = vertices[i, 0], vertices[i, 1], vertices[j, 0], vertices[j, 1]
+        start_1, start_2 = s_1 * (nu / p[i]), s_2 * (nu / p[i])
+        along_1, along_2 = z_1 - s_1 * (p[j] / p[i]), z_2 - s_2 * (p[j] / p[i])
+        slope = along_1 * (Q_11 * start_1 + Q_12 * start_2 + w_1) + along_2 * (Q_12 * start_1 + Q_22 * start_2 + w_2)
+        curvature = along_1 * (Q_11 * along_1 + Q_12 * along_2) + along_2 * (Q_12 * along_1 + Q_22 * along_2)
+        farthest = nu / p[j] if p[j] > 0.0 else inf
+        x_j = -slope / curvature if slope < 0.0 and curvature > 0.0 else 0.0
+        x_i = (nu - x_j * p[j]) / p[i]
+        if x_j >= farthest:
+            x_i, x_j = 0.0, farthest
+        r_1, r_2 = x_i * s_1 + x_j * z_1, x_i * s_2 + x_j * z_2
+        # the difference of the two energies, from their mean velocity
+        step_1, step_2, mean_1, mean_2 = r_1 - best_1, r_2 - best_2, 0.5 * (r_1 + best_1), 0.5 * (r_2 + best_2)
+        change = step_1 * (Q_11 * mean_1 + Q_12 * mean_2 + w_1) + step_2 * (Q_12 * mean_1 + Q_22 * mean_2 + w_2)
+        if not found or change < 0.0:
+            found, best_n, best_1, best_2 = True, x_i + x_j, r_1, r_2
+            branch = STICK if outside == 0.0 and 0.0 < x_j < farthest else SLIP
+    return best_n, best_1, best_2, branch

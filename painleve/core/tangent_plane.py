@@ -1,0 +1,54 @@
+"""The kinetic energy on the plane of the impulses that cancel the normal velocity (the project's notes, section 2).
+
+With nu = -v_n > 0 these are r_n = (nu - b.r_t)/a, and the energy is 1/2 r_t.Q r_t + w.r_t, where Q = C - b b'/a is the
+compliance of the tip that is held on the constraint and w = v_t + b nu/a its tangential velocity after a frictionless
+impact: Q r_t + w is the tangential velocity that an impulse leaves, and -Q^-1 w the one that stops the tip.
+"""
+
+from painleve._jit import jit
+
+# Entries of Q are differences: below this many units in the last place a determinant, or an entry, is rounding.
+ROUNDING = 2.0**-50
+
+
+@jit
+def tangent_energy(a, b_1, b_2, C_11, C_12, C_22, nu, v_1, v_2):
+    """(Q_11, Q_12, Q_22, w_1, w_2)."""
+    slope_1, slope_2 = b_1 / a, b_2 / a
+    return (
+        C_11 - b_1 * slope_1, C_12 - b_1 * slope_2, C_22 - b_2 * slope_2,
+        v_1 + nu * slope_1, v_2 + nu * slope_2,
+    )  # fmt: skip
+
+
+@jit
+def sticking_point(Q_11, Q_12, Q_22, w_1, w_2):
+    """-Q^-1 w in homogeneous coordinates (X, Y, W): the point (X, Y)/W, at infinity where W = 0."""
+    return Q_12 * w_2 - Q_22 * w_1, Q_12 * w_1 - Q_11 * w_2, Q_11 * Q_22 - Q_12 * Q_12
+
+
+@jit
+def is_definite(Q_11, Q_12, Q_22):
+    """Whether Q is positive definite beyond rounding."""
+    return Q_11 > 0.0 and Q_22 > 0.0 and Q_11 * Q_22 - Q_12 * Q_12 > ROUNDING * (Q_11 * Q_22)
+
+
+@jit
+def made_definite(Q_11, Q_12, Q_22, w_1, w_2, C_11, C_22):
+    """(Q_11, Q_12, Q_22, w_1, w_2) of an energy with Q changed by its rounding and multiplied by a positive factor.
+
+    A direction in which nothing happens (a section without width: Q and w vanish there) takes the compliance of the
+    other one, so that the least impulse is found; all five are zero where the section is a point.
+    """
+    Q_11, Q_22 = max(Q_11, ROUNDING * C_11), max(Q_22, ROUNDING * C_22)
+    largest = max(Q_11, Q_22, abs(w_1), abs(w_2))
+    if largest == 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0
+    Q_11, Q_12, Q_22, w_1, w_2 = Q_11 / largest, Q_12 / largest, Q_22 / largest, w_1 / largest, w_2 / largest
+    if Q_11 == 0.0:
+        Q_11 = Q_22
+    if Q_22 == 0.0:
+        Q_22 = Q_11
+    bound = Q_11**0.5 * Q_22**0.5
+    Q_12 = min(max(Q_12, -bound), bound)
+    return Q_11 * (1.0 + ROUNDING), Q_12, Q_22 * (1.0 + ROUNDING), w_1, w_2
