@@ -18,6 +18,7 @@ from painleve.plotting.gamma_map import draw_gamma_map
 from painleve.plotting.hard_cases import draw_near_critical, draw_rounding, draw_sampled_bound
 from painleve.plotting.members import draw_members
 from painleve.plotting.plurality import draw_initial_layer, draw_jam_law, draw_step_sizes
+from painleve.plotting.reference import draw_reference
 from painleve.plotting.regimes import draw_regimes
 from painleve.plotting.style import STYLE
 from painleve.plotting.trajectory import draw_trajectory
@@ -40,6 +41,7 @@ DRAWINGS: Mapping[str, Callable[[xr.Dataset], Figure]] = MappingProxyType({
     "rounding": draw_rounding,
     "near_critical": draw_near_critical,
     "convergence": draw_convergence,
+    "reference": draw_reference,
 })  # fmt: skip
 # Without dates, the same dataset gives the same bytes.
 WITHOUT_DATE = {"pdf": {"CreationDate": None}, "svg": {"Date": None}, "png": {}}
