@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal
+from typing import Literal, overload
 
 import numpy as np
 import sympy as sp
 
 from painleve import sets
+from painleve.asymptotics.coulomb_limit import CoulombLimitSet, coulomb_limit_set
 from painleve.asymptotics.least_energy import least_edge, least_energy
+from painleve.errors import InputError
 from painleve.mechanics.derive import derive
 from painleve.mechanics.signs import Sign, Signed, exact_sign
 from painleve.mechanics.state import State
@@ -77,8 +79,25 @@ class LimitSet:
         return sets.Points(np.array(ends))
 
 
-def limit_set(state: State) -> LimitSet:
-    """A(q, u-) of a state, from exact signs; kind "undecided" where a sign cannot be decided."""
+@overload
+def limit_set(state: State, law: Literal["projection"] = "projection") -> LimitSet: ...
+@overload
+def limit_set(state: State, law: Literal["coulomb"]) -> CoulombLimitSet: ...
+def limit_set(state: State, law: str = "projection") -> LimitSet | CoulombLimitSet:
+    """The right velocities at a tangential contact, from exact signs; kind "undecided" where a sign is not decided.
+
+    Of the law "projection", S of the paper's (7): A(q, u-). Of the law "coulomb", Coulomb's law with maximal
+    dissipation: the same for k <= 1 and in general another set for k = 2 (painleve.asymptotics.coulomb_limit). Raises
+    InputError for another law.
+    """
+    if law == "coulomb":
+        return coulomb_limit_set(state)
+    if law != "projection":
+        raise InputError(f"limit set: no law {law!r}; choose projection or coulomb")
+    return _projected(state)
+
+
+def _projected(state: State) -> LimitSet:
     d, scene = derive(state.scene), state.scene
     if scene.friction is None:
         return _limit(state, "point", exact_sign(state.exact(d.gamma)), 0, None, "without friction gamma is positive")
