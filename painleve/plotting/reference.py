@@ -18,7 +18,7 @@ UNIFORM = 3.0
 
 
 def draw_reference(dataset: xr.Dataset) -> Figure:
-    """Left: lines from the derivation, marks as published. Right: slips below and above mu_C."""
+    """Left: lines from the derivation, marks from the reference data. Right: slips below and above mu_C."""
     figure, (left, right) = panels(2, columns=2, height=3.2)
     _draw_friction(left, dataset)
     _draw_forces(right, dataset)
@@ -32,14 +32,14 @@ def _draw_friction(axis: Axes, dataset: xr.Dataset) -> None:
                   linewidth=1.8 if alpha == UNIFORM else 1.0, label=f"$\\mu_c$, $\\alpha$ = {alpha:g}")  # fmt: skip
     marks: dict[str, Any] = {"markeredgecolor": "black", "linestyle": "none", "zorder": 4}
     axis.plot(np.degrees(dataset["least_friction_angle"]), dataset["least_friction"], marker="o",
-              color=PALETTE["vermilion"], label="$\\mu_P$, published", **marks)  # fmt: skip
+              color=PALETTE["vermilion"], label="$\\mu_P$, reference", **marks)  # fmt: skip
     for edges in np.degrees(dataset["edges"]):
-        axis.plot(edges, dataset["edge_friction"], marker="s", color=PALETTE["sky"], label="band edge, published",
+        axis.plot(edges, dataset["edge_friction"], marker="s", color=PALETTE["sky"], label="band edge, reference",
                   **marks)  # fmt: skip
     axis.plot(60.0, dataset["sixty_degrees_friction"], marker="D", color=PALETTE["yellow"],
-              label="rod at 60°, published", **marks)  # fmt: skip
+              label="rod at 60°, reference", **marks)  # fmt: skip
     axis.axhline(float(dataset["singular_friction"]), color=GREY, linewidth=0.8,
-                 label="$\\mu_C$, published ($\\alpha$ = 3)")  # fmt: skip
+                 label="$\\mu_C$, reference ($\\alpha$ = 3)")  # fmt: skip
     axis.set_ylim(0.0, 4.0)
     axis.set_xlim(0.0, 90.0)
     axis.set_xticks(range(0, 91, 15))
