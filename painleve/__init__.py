@@ -8,6 +8,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from painleve.figures import announce
+
 if TYPE_CHECKING:
     from painleve.asymptotics.certify import CertifyOptions
     from painleve.asymptotics.coulomb import coulomb_solutions
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
     from painleve.plotting.draw import draw, save_figure
     from painleve.store import load, save
     from painleve.sweep.distances import sweep_distances
+    from painleve.sweep.trajectories import trajectory_dataset
 
 _HOMES = {
     "CertifyOptions": "painleve.asymptotics.certify",
@@ -57,6 +60,7 @@ _HOMES = {
     "save_figure": "painleve.plotting.draw",
     "simulate": "painleve.dynamics.simulate",
     "sweep_distances": "painleve.sweep.distances",
+    "trajectory_dataset": "painleve.sweep.trajectories",
 }
 
 __all__ = [
@@ -86,7 +90,15 @@ __all__ = [
     "save_figure",
     "simulate",
     "sweep_distances",
+    "trajectory_dataset",
 ]
+
+
+def _draw(result: Any) -> Any:
+    return __getattr__("draw")(result)
+
+
+announce(_draw)
 
 
 def __getattr__(name: str) -> Any:

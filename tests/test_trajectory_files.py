@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +15,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 from planar_scenes import SCENE_NAMES
 
+import painleve
 from painleve.core.motion_codes import Change
 from painleve.dynamics.simulate import simulate
 from painleve.dynamics.start import make_start
@@ -171,6 +174,19 @@ def test_spaced_instants_hold_both_ends_and_repeat_none() -> None:
     assert spaced(np.array([0.0]), 5).tolist() == [0]
     assert spaced(np.arange(101.0), 5).tolist() == [0, 25, 50, 75, 100]
     assert spaced(np.array([0.0, 1.0, 1.0, 1.0]), 9).tolist() == [0, 1, 3]
+
+
+def test_a_trajectory_plots_itself_as_its_dataset_is_drawn(tmp_path: Path) -> None:
+    found = simulate(make_state(ROD, "stoss"), step=1e-3, until=0.9)
+    figures = (found.plot(), painleve.draw(found), draw(trajectory_dataset(found)))
+    first, *others = (save_figure(f, tmp_path / f"{i}.png").read_bytes() for i, f in enumerate(figures))
+    assert others == [first, first]
+
+
+def test_a_trajectory_needs_no_plotting_to_be_computed() -> None:
+    code = "import sys, painleve; painleve.simulate; print('matplotlib' in sys.modules)"
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert answer.stdout.strip() == "False"
 
 
 def test_the_same_trajectory_gives_the_same_picture(datasets: dict[str, xr.Dataset], tmp_path: Path) -> None:

@@ -29,6 +29,7 @@ def record(trajectory: Trajectory) -> xr.Dataset:
         variables = {**_motion(trajectory), **_contact(trajectory), **_outline(trajectory)}
     time = ("time", trajectory.t, {"units": "s", "long_name": "time along the trajectory"})
     attributes = {
+        "title": f"Trajectory of {scene.name} by {trajectory.scheme}: {scene.sentence}", "kind": "trajectory",
         "scene": scene.name, "start": trajectory.start.label, "scheme": trajectory.scheme,
         "status": trajectory.ending.label, "ending": trajectory.sentence,
         "coordinates_of_scene": " ".join(c.name for c in scene.coordinates),

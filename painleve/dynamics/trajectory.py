@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -13,6 +14,7 @@ from painleve.core.motion_codes import Change, Ending
 from painleve.dynamics.proposition1 import Proposition1
 from painleve.dynamics.record import record
 from painleve.dynamics.start import Start
+from painleve.figures import figure_of
 
 __all__ = ["Jump", "Trajectory"]
 
@@ -134,6 +136,10 @@ class Trajectory:
     def to_xarray(self) -> xr.Dataset:
         """The trajectory with units and sentences, and the outline of the body where the scene has one."""
         return record(self)
+
+    def plot(self) -> Any:
+        """The figure (matplotlib) of the trajectory; a notebook shows it, `painleve.save_figure` keeps it."""
+        return figure_of(self)
 
 
 def gamma_of(rows: tuple[float, ...], d: int, planar: bool) -> float:

@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
+from typing import Protocol
 
 import matplotlib as mpl
 import xarray as xr
@@ -47,8 +48,15 @@ DRAWINGS: Mapping[str, Callable[[xr.Dataset], Figure]] = MappingProxyType({
 WITHOUT_DATE = {"pdf": {"CreationDate": None}, "svg": {"Date": None}, "png": {}}
 
 
-def draw(dataset: xr.Dataset) -> Figure:
-    """The figure of a dataset of this package. Raises InputError for a kind that has none."""
+class Recorded(Protocol):
+    """A result that makes a dataset of itself, such as a trajectory."""
+
+    def to_xarray(self) -> xr.Dataset: ...
+
+
+def draw(result: xr.Dataset | Recorded) -> Figure:
+    """The figure of a dataset of this package, or of a trajectory. Raises InputError for a kind that has none."""
+    dataset = result if isinstance(result, xr.Dataset) else result.to_xarray()
     kind = str(dataset.attrs.get("kind", "unknown"))
     if kind not in DRAWINGS:
         raise InputError(f"no figure for a dataset of kind {kind!r}; there are figures of {', '.join(DRAWINGS)}")

@@ -11,8 +11,7 @@ __all__ = ["trajectory_dataset"]
 
 
 def trajectory_dataset(trajectory: Trajectory, *, command: str | None = None) -> xr.Dataset:
-    """What `painleve.store.save` keeps and `painleve.plotting.draw` draws; `command` as for provenance."""
+    """What `painleve.store.save` keeps: a file says where it comes from; `command` as for provenance."""
     scene = trajectory.start.scene
     source = provenance(scene=scene, scene_digest=trajectory.start.motion.digest, seed=0, command=command)
-    title = f"Trajectory of {scene.name} by {trajectory.scheme}: {scene.sentence}"
-    return trajectory.to_xarray().assign_attrs({**source, "title": title, "kind": "trajectory"})
+    return trajectory.to_xarray().assign_attrs(source)
