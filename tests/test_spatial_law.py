@@ -154,14 +154,36 @@ def test_the_polygon_s_impulse_is_the_projection_that_an_interior_point_solver_f
 
 @given(SEEDS, st.sampled_from(SHAPES), st.integers(-500, 500))
 @thorough
-def test_the_disc_s_impulse_is_positively_homogeneous_exactly_for_powers_of_two(seed, shape, exponent):
+def test_the_law_in_space_is_positively_homogeneous_over_300_powers_of_ten(seed, shape, exponent):
     rng = np.random.default_rng(seed)
-    contact = Contact(rng, shape)
+    contact, vertices = Contact(rng, shape), random_polygon(rng)
     v = contact.velocity(rng, -6.0, 1.0)
-    found, branch = contact.impulse(v)
-    scaled, same = contact.impulse(np.ldexp(v, exponent))
-    assert same is branch
-    np.testing.assert_allclose(np.ldexp(scaled, -exponent), found, rtol=1e-15 * np.linalg.cond(contact.Q), atol=0)
+    for law in (contact.impulse, lambda v: contact.polygon(vertices, v)):
+        found, branch = law(v)
+        scaled, same = law(np.ldexp(v, exponent))
+        assert same is branch
+        error = np.linalg.norm(np.ldexp(scaled, -exponent) - found)
+        assert error <= 10.0 * EPS * np.linalg.cond(contact.Q) * np.linalg.norm(found)
+
+
+@pytest.mark.parametrize("shape", [0.9, 0.3, 1e-2, 0.0, -1e-2, -0.3, -3.0])
+def test_no_point_of_a_fine_grid_on_the_edge_of_the_cone_has_less_energy(shape):
+    rng = np.random.default_rng(16)
+    angles = np.linspace(0.0, 2.0 * pi, 20001)
+    s = np.column_stack([np.cos(angles), np.sin(angles)])
+    for _ in range(20):
+        contact = Contact(rng, shape)
+        v = contact.velocity(rng, -4.0, 0.0)
+        found, _ = contact.impulse(v)
+        lift = contact.a + s @ contact.b
+        r_n = -v[0] / lift[lift > 1e-6 * contact.a]
+        r = np.column_stack([r_n, r_n[:, None] * s[lift > 1e-6 * contact.a]])
+        G = np.block([[np.array([[contact.a]]), contact.b[None, :]], [contact.b[:, None], contact.C]])
+        energies = 0.5 * np.einsum("ij,jk,ik->i", r, G, r) + r @ v
+        least = contact.energy(found, v)
+        assert least <= energies.min() + 1e-12 * (abs(least) + v @ np.linalg.solve(G, v))
+        assert abs(G[0] @ found + v[0]) <= 4.0 * EPS * (np.abs(G[0]) @ np.abs(found))
+        assert hypot(*found[1:]) <= found[0] * (1.0 + 4.0 * EPS)
 
 
 def test_without_friction_the_impulse_is_normal_and_no_number_is_undefined():

@@ -17,13 +17,9 @@ from math import hypot, inf, sqrt
 from painleve._jit import jit
 from painleve.core.codes import Branch
 from painleve.core.quartic import bracketed_root
-from painleve.core.tangent_plane import ROUNDING, is_definite, made_definite, sticking_point, tangent_energy
+from painleve.core.tangent_plane import ROUNDING, is_definite, made_definite, scales, sticking_point, tangent_energy
 
 FREE, STICK, SLIP = int(Branch.FREE), int(Branch.STICK), int(Branch.SLIP)
-
-# Velocities beyond these are scaled by a power of two first, so that squares neither overflow nor vanish.
-LARGEST, SMALLEST = 2.0**200, 2.0**-200
-UP, DOWN = 2.0**450, 2.0**-450
 
 
 @jit
@@ -35,13 +31,8 @@ def disc_impulse(a, p, b_1, b_2, C_11, C_12, C_22, v_n, v_1, v_2):
     """
     if v_n >= 0.0:
         return 0.0, 0.0, 0.0, FREE
-    nu, size = -v_n, max(-v_n, abs(v_1), abs(v_2))
-    scale, back = 1.0, 1.0
-    if size > LARGEST:
-        scale, back = DOWN, UP
-    elif size < SMALLEST:
-        scale, back = UP, DOWN
-    nu *= scale
+    scale, back = scales(v_n, v_1, v_2)
+    nu = -v_n * scale
     Q_11, Q_12, Q_22, w_1, w_2 = tangent_energy(a, b_1, b_2, C_11, C_12, C_22, nu, v_1 * scale, v_2 * scale)
     if not is_definite(Q_11, Q_12, Q_22):
         Q_11, Q_12, Q_22, w_1, w_2 = made_definite(Q_11, Q_12, Q_22, w_1, w_2, C_11, C_22)
@@ -173,7 +164,8 @@ def half_angle(a, p, A, q_11, q_12, q_22, w_1, w_2, nu, k_0, k_1, k_2, discrimin
         asymptote = sqrt(A / -p)
         high, third = min(high, asymptote), asymptote / 3.0
         if high > third and (low >= third or f_0 + third * (f_1 + third * (f_2 + third * (f_3 + third * f_4))) < 0.0):
-            return near_asymptote(a, -p, A, q_11, q_12, q_22, w_1, w_2, nu, low / asymptote, high / asymptote)
+            likely = s / (c * asymptote) if c != 0.0 else 1.0
+            return near_asymptote(a, -p, A, q_11, q_12, q_22, w_1, w_2, nu, low / asymptote, high / asymptote, likely)
         high = min(high, third)
     if high <= 1.0 or (low < 1.0 and f_0 + f_1 + f_2 + f_3 + f_4 >= 0.0):
         t = bracketed_root(f_0, f_1, f_2, f_3, f_4, low, min(high, 1.0), s / c if c != 0.0 else 0.0)
@@ -183,8 +175,11 @@ def half_angle(a, p, A, q_11, q_12, q_22, w_1, w_2, nu, k_0, k_1, k_2, discrimin
 
 
 @jit
-def near_asymptote(a, P, A, q_11, q_12, q_22, w_1, w_2, nu, low, high):
-    """(c, s, A c^2 - P s^2), P = -p > 0, where c = m (1 + x), s = 1 - x and m = sqrt(P/A): the asymptote is x = 0."""
+def near_asymptote(a, P, A, q_11, q_12, q_22, w_1, w_2, nu, low, high, likely):
+    """(c, s, A c^2 - P s^2), P = -p > 0, where c = m (1 + x), s = 1 - x and m = sqrt(P/A): the asymptote is x = 0.
+
+    The ends of the bracket and the likely place of the root come as t over that of the asymptote.
+    """
     m = sqrt(P / A)
     g_0, g_1, g_2 = P * m * q_12, 2.0 * P * (q_22 - a * q_11 / A), -6.0 * a * m * q_12
     g_3, g_4 = 2.0 * (a * q_11 + P * q_22), -A * m * q_12
@@ -197,6 +192,8 @@ def near_asymptote(a, P, A, q_11, q_12, q_22, w_1, w_2, nu, low, high):
     c_4 = nu * (g_0 - g_1 + g_2 - g_3 + g_4)
     nearer = max((1.0 - high) / (1.0 + high) - ROUNDING, 0.0)
     farther = min((1.0 - low) / (1.0 + low) + ROUNDING, 0.5)
-    guess = c_0 / -c_1 if c_1 < 0.0 else 0.0
+    guess = (1.0 - likely) / (1.0 + likely) if likely > 0.0 else 0.0
+    if c_0 < -0.1 * c_1:  # close to the asymptote the quartic is its first two terms
+        guess = c_0 / -c_1
     x = bracketed_root(-c_0, -c_1, -c_2, -c_3, -c_4, nearer, farther, guess)
     return m * (1.0 + x), 1.0 - x, 4.0 * P * x

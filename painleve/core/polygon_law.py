@@ -10,7 +10,7 @@ from math import inf
 
 from painleve._jit import jit
 from painleve.core.codes import Branch
-from painleve.core.tangent_plane import is_definite, made_definite, sticking_point, tangent_energy
+from painleve.core.tangent_plane import is_definite, made_definite, scales, sticking_point, tangent_energy
 
 FREE, STICK, SLIP = int(Branch.FREE), int(Branch.STICK), int(Branch.SLIP)
 
@@ -24,15 +24,18 @@ def polygon_impulse(a, b_1, b_2, C_11, C_12, C_22, vertices, p, v_n, v_1, v_2):
     """
     if v_n >= 0.0:
         return 0.0, 0.0, 0.0, FREE
-    nu = -v_n
-    Q_11, Q_12, Q_22, w_1, w_2 = tangent_energy(a, b_1, b_2, C_11, C_12, C_22, nu, v_1, v_2)
+    scale, back = scales(v_n, v_1, v_2)
+    nu = -v_n * scale
+    Q_11, Q_12, Q_22, w_1, w_2 = tangent_energy(a, b_1, b_2, C_11, C_12, C_22, nu, v_1 * scale, v_2 * scale)
     if not is_definite(Q_11, Q_12, Q_22):
         Q_11, Q_12, Q_22, w_1, w_2 = made_definite(Q_11, Q_12, Q_22, w_1, w_2, C_11, C_22)
     X, Y, W = sticking_point(Q_11, Q_12, Q_22, w_1, w_2)
     if sticks(vertices, p, nu, X, Y, W):
         r_1, r_2 = X / W, Y / W
-        return (nu - b_1 * r_1 - b_2 * r_2) / a, r_1, r_2, STICK
-    return nearest_on_boundary(vertices, p, Q_11, Q_12, Q_22, w_1, w_2, nu, X, Y, W)
+        r_n, branch = (nu - b_1 * r_1 - b_2 * r_2) / a, STICK
+    else:
+        r_n, r_1, r_2, branch = nearest_on_boundary(vertices, p, Q_11, Q_12, Q_22, w_1, w_2, nu, X, Y, W)
+    return r_n * back, r_1 * back, r_2 * back, branch
 
 
 @jit

@@ -9,6 +9,19 @@ from painleve._jit import jit
 
 # Entries of Q are differences: below this many units in the last place a determinant, or an entry, is rounding.
 ROUNDING = 2.0**-50
+LARGEST, SMALLEST = 2.0**200, 2.0**-200
+UP, DOWN = 2.0**450, 2.0**-450
+
+
+@jit
+def scales(v_n, v_1, v_2):
+    """A power of two for the velocities, so that their squares neither overflow nor vanish, and its inverse."""
+    size = max(abs(v_n), abs(v_1), abs(v_2))
+    if size > LARGEST:
+        return DOWN, UP
+    if size < SMALLEST:
+        return UP, DOWN
+    return 1.0, 1.0
 
 
 @jit
