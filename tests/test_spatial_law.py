@@ -256,3 +256,35 @@ def test_a_planar_problem_in_space_has_the_planar_answer(shape):
         spatial = polygon_impulse(a, b, 0.0, C_11, 0.0, C_22, segment, np.array(edges[::-1]), v_n, v_t, 0.0)
         np.testing.assert_allclose([*spatial[:2], spatial[2]], [*planar[:2], 0.0], rtol=1e-13, atol=1e-13)
         assert (spatial[3] == Branch.STICK) == (planar[2] == Branch.STICK)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_law_passes_from_the_ellipse_through_the_parabola_to_the_hyperbola_without_a_jump(seed):
+    """At a fixed v_n < 0 the region changes continuously with p, and so does its point nearest to the sticking one."""
+    rng = np.random.default_rng(seed)
+    v = np.array([-abs(rng.normal()), *(3.0 * rng.normal(size=2))])
+    at_zero, _ = Contact(np.random.default_rng(seed), 0.0).impulse(v)
+    changes = []
+    for step in (1e-4, 1e-6, 1e-8):
+        sides = [Contact(np.random.default_rng(seed), sign * step).impulse(v)[0] for sign in (1.0, -1.0)]
+        changes.append(max(np.linalg.norm(r - at_zero) for r in sides) / np.linalg.norm(at_zero))
+    assert changes[1] < changes[0] / 50
+    assert changes[2] < changes[1] / 50  # linear in p: a factor of 100 each
+
+
+@pytest.mark.parametrize("shape", [0.9, 0.3, 1e-8, 0.0, -1e-8, -0.3, -3.0])
+def test_a_disc_whose_b_slip_and_principal_axis_are_parallel_has_the_planar_answer(shape):
+    """By symmetry; and whether the answer is stick or slip is told alike."""
+    rng = np.random.default_rng(5)
+    for _ in range(50):
+        a, C, across = 1.0, 1.0 + rng.exponential(), rng.exponential()
+        b = (1.0 - shape) * a * rng.choice([-1.0, 1.0])
+        C += b * b / a
+        v_n, v_t = -rng.exponential() * 10.0 ** rng.uniform(-6, 0), rng.normal()
+        p = shape * a
+        plus, minus = (p, a + abs(b)) if b < 0.0 else (a + abs(b), p)
+        r_n, r_t, planar = planar_impulse(a, b, C, plus, minus, 1.0, 1.0, v_n, v_t)
+        n, r_1, r_2, branch = disc_impulse(a, p, b, 0.0, C, 0.0, across, v_n, v_t, 0.0)
+        assert (branch == Branch.STICK) == (planar == Branch.STICK)
+        assert r_2 == pytest.approx(0.0, abs=1e-14 * n)
+        assert (n, r_1) == pytest.approx((r_n, r_t), rel=1e-12, abs=1e-13 * r_n)
