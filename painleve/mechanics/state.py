@@ -187,7 +187,7 @@ def _check(state: State) -> None:
     if exact_sign(state.exact(d.gradient_squared)).sign is not Sign.POSITIVE:
         raise InputError(f"{where}: grad g vanishes there; choose another configuration")
     if scene.friction is not None:
-        if exact_sign(state.exact(d.delassus.det(method="berkowitz"))).sign is not Sign.POSITIVE:
+        if exact_sign(state.exact(d.delassus).det(method="berkowitz")).sign is not Sign.POSITIVE:
             raise InputError(f"{where}: the tangential displacements do not vary independently of g there (H3); "
                              "choose another configuration")  # fmt: skip
         for condition in scene.friction.conditions:
