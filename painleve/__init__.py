@@ -13,6 +13,7 @@ from painleve.figures import announce
 if TYPE_CHECKING:
     from painleve.asymptotics.certify import CertifyOptions
     from painleve.asymptotics.coulomb import coulomb_solutions
+    from painleve.asymptotics.hypotheses import check_hypotheses
     from painleve.asymptotics.limit_set import limit_set
     from painleve.asymptotics.methods import distance
     from painleve.asymptotics.optimise import OptimiseOptions
@@ -39,6 +40,7 @@ _HOMES = {
     "OptimiseOptions": "painleve.asymptotics.optimise",
     "SCENE_NAMES": "painleve.mechanics.library",
     "SampleOptions": "painleve.asymptotics.sample",
+    "check_hypotheses": "painleve.asymptotics.hypotheses",
     "classify": "painleve.asymptotics.theorem",
     "collect": "painleve.asymptotics.theorem",
     "coulomb_solutions": "painleve.asymptotics.coulomb",
@@ -69,6 +71,7 @@ __all__ = [
     "InputError",
     "OptimiseOptions",
     "SampleOptions",
+    "check_hypotheses",
     "classify",
     "collect",
     "coulomb_solutions",

@@ -135,7 +135,9 @@ def test_the_error_for_a_state_off_the_constraint_says_by_how_much(capsys):
     assert f"{2 / math.sqrt(5) - 1:.6g}" in capsys.readouterr().err
 
 
-COMMANDS = ["scenes", "derive", "classify", "distance", "rate", "sweep", "study", "plot", "simulate", "ensemble"]
+COMMANDS = [
+    "scenes", "derive", "check", "classify", "distance", "rate", "sweep", "study", "plot", "simulate", "ensemble",
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("command", COMMANDS)

@@ -7,12 +7,25 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from painleve.cli import classify, derive, distance, ensemble, new_scene, plot, rate, scenes, simulate, study, sweep
+from painleve.cli import (
+    check,
+    classify,
+    derive,
+    distance,
+    ensemble,
+    new_scene,
+    plot,
+    rate,
+    scenes,
+    simulate,
+    study,
+    sweep,
+)
 from painleve.errors import InputError
 
 __all__ = ["main"]
 
-COMMANDS = (scenes, new_scene, derive, classify, distance, rate, sweep, study, plot, simulate, ensemble)
+COMMANDS = (scenes, new_scene, derive, check, classify, distance, rate, sweep, study, plot, simulate, ensemble)
 
 
 class _Parser(argparse.ArgumentParser):

@@ -1,0 +1,82 @@
+"""`painleve check SCENE`: the hypotheses of Theorem 1 near a state."""
+
+from __future__ import annotations
+
+import argparse
+import textwrap
+from typing import TYPE_CHECKING, Any
+
+from painleve.cli.common import add_command, add_json, add_scene, add_state, assignments, print_json, read_state
+
+if TYPE_CHECKING:
+    from painleve.asymptotics.hypotheses import HypothesesCheck
+
+WIDTH = 118
+
+
+def register(commands: Any) -> None:
+    parser = add_command(
+        commands, "check", run, sentence="check the hypotheses (H1) to (H4) of Theorem 1 near a state, or near each "
+        "named state", example="painleve check slender_rod --state paradox --radius 1/10",
+    )  # fmt: skip
+    add_scene(parser)
+    add_state(parser)
+    parser.add_argument(
+        "--radius", default=None, metavar="R",
+        help="of the ball around the state, an exact number (default 1/10), in the scene's units",
+    )  # fmt: skip
+    add_json(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    from painleve.asymptotics.hypotheses import DEFAULT_RADIUS, check_hypotheses
+
+    radius = DEFAULT_RADIUS if options.radius is None else options.radius
+    if options.state:
+        found = check_hypotheses(read_state(options), radius=radius)
+        print_json(found.as_dict()) if options.json else _print_one(found)
+        return 0
+    checks = [check_hypotheses(state, radius=radius) for state in _named_states(options)]
+    if options.json:
+        print_json({"scene": options.scene, "states": {c.state.label: c.as_dict() for c in checks}})
+    else:
+        _print_table(checks)
+    return 0
+
+
+def _named_states(options: argparse.Namespace) -> list[Any]:
+    from painleve.mechanics.library import load_scene
+    from painleve.mechanics.state import make_state
+
+    scene = load_scene(options.scene)
+    if not scene.states:
+        return [read_state(options)]  # says that a state is needed, and its keys
+    parameters = assignments(options.parameters, "--set")
+    return [make_state(scene, named.name, parameters=parameters) for named in scene.states]
+
+
+def _print_one(found: HypothesesCheck) -> None:
+    print(f"{found.state.scene.name}, {found.state.label}: {_ball(found)}")
+    for h in found.hypotheses:
+        print(f"\n({h.name}) {h.status.value}: {h.asks}")
+        print(textwrap.fill(h.sentence, WIDTH, initial_indent="     ", subsequent_indent="     "))
+    print(f"\n{found.theorem.value}: {found.sentence}")
+
+
+def _print_table(checks: list[HypothesesCheck]) -> None:
+    """One row a state; then a sentence for whatever is not proved."""
+    print(f"{checks[0].state.scene.name}: {_ball(checks[0])}\n")
+    names = [h.name for h in checks[0].hypotheses]
+    rows = [["state", *names, "Theorem 1"]]
+    rows += [[c.state.label, *(h.status.value for h in c.hypotheses), c.theorem.value] for c in checks]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        print("  ".join(f"{word:{width}}" for word, width in zip(row, widths, strict=True)).rstrip())
+    open_ones = [(c, h) for c in checks for h in c.hypotheses if h.status.value != "proved"]
+    for check, hypothesis in open_ones:
+        line = f"{check.state.label}, ({hypothesis.name}) {hypothesis.status.value}: {hypothesis.sentence}"
+        print("\n" + textwrap.fill(line, WIDTH, subsequent_indent="     "))
+
+
+def _ball(found: HypothesesCheck) -> str:
+    return f"hypotheses of Theorem 1 on the closed ball of radius {float(found.radius):g} around q"
