@@ -22,7 +22,7 @@ from types import MappingProxyType
 import sympy
 from flint import arb, ctx, fmpq
 
-from painleve.errors import InputError
+from painleve.errors import InputError, nearest
 from painleve.mechanics.balls import ball
 
 __all__ = ["exact_number", "parse_expression", "parse_number"]
@@ -264,7 +264,8 @@ class _Reader:
             raise _Refused(f"{name} is a function: write {name}(...)")
         if name.lower() in ("nan", "inf", "infinity", "oo"):
             raise _Refused(f"{_shown(name)} is not a finite number")
-        raise _Refused(f"the name {_shown(name)} is not declared; {self._allowed()}")
+        hint = nearest(name, self.symbols)
+        raise _Refused(f"the name {_shown(name)} is not declared{hint}; {self._allowed()}")
 
     def _allowed(self) -> str:
         names = ", ".join(sorted({*self.symbols, "pi"}))

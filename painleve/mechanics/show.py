@@ -8,12 +8,16 @@ from functools import lru_cache
 
 import sympy as sp
 
+from painleve.errors import InputError
 from painleve.mechanics.derive import Derivation, derive
 from painleve.mechanics.friction import Disc, Ellipse, Polygon, Segment, norm
 from painleve.mechanics.parse import parse_expression
 from painleve.mechanics.scene import Coordinate, Parameter, Scene
+from painleve.mechanics.scene_file.work import TooMuchWork, limited_calls
 
 __all__ = ["Line", "as_dict", "as_latex", "as_text", "derivation_lines"]
+
+MOST_CALLS = 15_000_000  # of Python functions, for a stranger's formulas
 
 SHORT = 12  # operations of a formula that is left as it is
 LONG = 380  # and of one that is only factored: trigonometric identities would take seconds
@@ -31,8 +35,18 @@ class Line:
 
 
 def derivation_lines(scene: Scene) -> list[Line]:
-    """The formulas from M to the critical friction; simplifying takes up to some seconds."""
-    return [*_mechanics(scene), *_contact(scene)]
+    """The formulas from M to the critical friction; simplifying takes up to some seconds.
+
+    Raises InputError for a scene from a file whose formulas take too much work to simplify.
+    """
+    if not scene.text:
+        return [*_mechanics(scene), *_contact(scene)]
+    try:
+        with limited_calls(MOST_CALLS):
+            return [*_mechanics(scene), *_contact(scene)]
+    except TooMuchWork:
+        raise InputError(f"{scene.file}: the formulas of this scene take too much work to simplify for printing; "
+                         "shorten them (no other command needs this)") from None  # fmt: skip
 
 
 def _mechanics(scene: Scene) -> Iterator[Line]:

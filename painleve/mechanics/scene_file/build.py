@@ -22,7 +22,7 @@ __all__ = ["scene_of_text"]
 
 RULES = ("placement", "velocity", "contact_parameters")  # what the state keys say
 MOST_COORDINATES, MOST_PARAMETERS, MOST_KEYS, MOST_STATES, MOST_POINTS = 6, 32, 16, 64, 64
-MOST_CALLS = 6_000_000  # of Python functions in deriving a scene
+MOST_CALLS = 4_000_000  # of Python functions in deriving a scene
 MOST_NODES = 20_000  # of the derived a, b, C and M^-1 W
 
 Symbols = Mapping[str, sp.Expr]

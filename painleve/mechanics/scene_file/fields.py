@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from painleve.errors import InputError
+from painleve.errors import InputError, nearest
 from painleve.mechanics.parse import parse_expression
 from painleve.mechanics.scene_file.document import Document, Number
 from painleve.mechanics.scene_file.lines import Path
-from painleve.mechanics.scene_file.names import nearest, shown, why_no_latex, why_no_sentence
+from painleve.mechanics.scene_file.names import shown, why_no_latex, why_no_sentence
 
 __all__ = ["Field"]
 

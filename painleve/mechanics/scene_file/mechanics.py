@@ -135,6 +135,8 @@ def _segment(field: Field, known: Symbols) -> Segment:
     if "mu" in field.table(("kind",), _COEFFICIENTS):
         (mu,) = _coefficients(field, known, "mu")
         return Segment(minus=mu, plus=mu)
+    if not {"minus", "plus"} & set(field.table(("kind",), _COEFFICIENTS)):
+        raise field.refuse("mu, or minus and plus, are missing")
     minus, plus = _coefficients(field, known, "minus", "plus")
     return Segment(minus=minus, plus=plus)
 

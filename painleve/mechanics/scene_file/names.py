@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
 import keyword
 import re
-from collections.abc import Iterable
 
-__all__ = ["nearest", "shown", "why_no_latex", "why_no_name", "why_no_sentence", "why_no_symbol"]
+__all__ = ["shown", "why_no_latex", "why_no_name", "why_no_sentence", "why_no_symbol"]
 
 MAX_NAME = 32  # characters
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*", re.ASCII)
@@ -42,12 +40,6 @@ _LATEX = re.compile(rf"{_ATOM}'{{0,2}}(?:[_^](?:{_ATOM}|\{{[A-Za-z0-9 ,+-]{{1,16
 def shown(text: str, limit: int = 40) -> str:
     """Somebody else's text for a message: quoted, short, and in ASCII, so that no letter passes for another."""
     return ascii(text[:limit]) + ("..." if len(text) > limit else "")
-
-
-def nearest(name: str, known: Iterable[str]) -> str:
-    """`; did you mean NAME?` where a known name is like this one, else nothing."""
-    found = difflib.get_close_matches(name[:MAX_NAME], list(known), n=1)
-    return f"; did you mean {found[0]}?" if found else ""
 
 
 def why_no_name(name: str) -> str | None:
