@@ -26,8 +26,9 @@ if TYPE_CHECKING:
     from painleve.dynamics.start import make_start
     from painleve.errors import InputError
     from painleve.mechanics.derive import derive
+    from painleve.mechanics.friction import Disc, Ellipse, Polygon, Segment
     from painleve.mechanics.library import SCENE_NAMES, load_scene
-    from painleve.mechanics.scene import make_scene
+    from painleve.mechanics.scene import Coordinate, NamedState, Outline, Parameter, StateKey, make_scene
     from painleve.mechanics.state import make_state
     from painleve.plotting.draw import draw, save_figure
     from painleve.store import load, save
@@ -36,10 +37,19 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "CertifyOptions": "painleve.asymptotics.certify",
+    "Coordinate": "painleve.mechanics.scene",
+    "Disc": "painleve.mechanics.friction",
+    "Ellipse": "painleve.mechanics.friction",
     "InputError": "painleve.errors",
+    "NamedState": "painleve.mechanics.scene",
     "OptimiseOptions": "painleve.asymptotics.optimise",
+    "Outline": "painleve.mechanics.scene",
+    "Parameter": "painleve.mechanics.scene",
+    "Polygon": "painleve.mechanics.friction",
     "SCENE_NAMES": "painleve.mechanics.library",
     "SampleOptions": "painleve.asymptotics.sample",
+    "Segment": "painleve.mechanics.friction",
+    "StateKey": "painleve.mechanics.scene",
     "check_hypotheses": "painleve.asymptotics.hypotheses",
     "classify": "painleve.asymptotics.theorem",
     "collect": "painleve.asymptotics.theorem",
@@ -68,9 +78,18 @@ _HOMES = {
 __all__ = [
     "SCENE_NAMES",
     "CertifyOptions",
+    "Coordinate",
+    "Disc",
+    "Ellipse",
     "InputError",
+    "NamedState",
     "OptimiseOptions",
+    "Outline",
+    "Parameter",
+    "Polygon",
     "SampleOptions",
+    "Segment",
+    "StateKey",
     "check_hypotheses",
     "classify",
     "collect",

@@ -116,23 +116,31 @@ def _after(state: State, d: Derivation, slip: sp.MatrixBase, r_t: sp.MatrixBase)
 
 def _in_wedge(state: State, d: Derivation, slip: sp.MatrixBase) -> LeastEnergy:
     """gamma < 0 in space."""
+    if all(exact_sign(state.exact(x)).sign is Sign.ZERO for x in slip):
+        return LeastEnergy()
     Q = _reduced(d)
     stick = -(Q.adjugate() * slip) / Q.det()
+    normal = -(d.couplings.T * stick)[0, 0] / d.a
+    inside = _in_cone(state, d, normal, stick)
+    if inside is Sign.UNDECIDED:
+        return LeastEnergy(undecided="whether the sticking impulse is in the friction cone is undecided")
+    if inside is Sign.POSITIVE:
+        return LeastEnergy(impulse=(normal, *stick), after="sticks")
     rays = wedge(state, d)
     if rays is None:
         return LeastEnergy(undecided="the sign of the normal compliance at a vertex of the polygon is undecided")
-    # r* is in the wedge of (s_1, s_2), counterclockwise and narrower than a half-plane, if it is left of one ray and
-    # right of the other.
-    sides = [exact_sign(state.exact(x)) for x in (_cross(rays[0], stick), _cross(stick, rays[1]))]
-    if any(side.sign is Sign.UNDECIDED for side in sides):
-        return LeastEnergy(undecided="whether the sticking impulse is in the friction cone is undecided: "
-                           + "; ".join(side.reason for side in sides if side.sign is Sign.UNDECIDED))  # fmt: skip
-    if all(side.sign in (Sign.POSITIVE, Sign.ZERO) for side in sides):
-        if all(exact_sign(state.exact(x)).sign is Sign.ZERO for x in slip):
-            return LeastEnergy()
-        normal = -(d.couplings.T * stick)[0, 0] / d.a
-        return LeastEnergy(impulse=(normal, *stick), after="sticks")
     return _better(state, d, slip, [_on_ray(state, d, slip, s) for s in rays])
+
+
+def _in_cone(state: State, d: Derivation, normal: sp.Expr, r_t: sp.MatrixBase) -> Sign:
+    """POSITIVE if an impulse that is not zero is in the friction cone, NEGATIVE if not."""
+    lifts = exact_sign(state.exact(normal)).sign
+    if lifts in (Sign.NEGATIVE, Sign.ZERO):
+        return Sign.NEGATIVE
+    sides = [exact_sign(state.exact(x)).sign for x in d.scene.friction.membership(r_t / normal)]  # type: ignore[union-attr]
+    if Sign.NEGATIVE in sides:
+        return Sign.NEGATIVE
+    return Sign.UNDECIDED if Sign.UNDECIDED in (lifts, *sides) else Sign.POSITIVE
 
 
 def _better(state: State, d: Derivation, slip: sp.MatrixBase, found: list[LeastEnergy]) -> LeastEnergy:
@@ -149,6 +157,3 @@ def _better(state: State, d: Derivation, slip: sp.MatrixBase, found: list[LeastE
         return LeastEnergy(undecided="which of the two edges of the wedge is nearer is undecided")
     return jumps[0] if difference.sign is Sign.POSITIVE else jumps[1]
 
-
-def _cross(x: sp.MatrixBase, y: sp.MatrixBase) -> sp.Expr:
-    return x[0] * y[1] - x[1] * y[0]

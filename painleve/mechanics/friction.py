@@ -44,6 +44,10 @@ class Segment:
     def conditions(self) -> tuple[Condition, ...]:
         return tuple(Condition(expression=end, sentence="the coefficient of friction") for end in self.expressions)
 
+    def membership(self, s: sp.MatrixBase) -> tuple[sp.Expr, ...]:
+        """Zero or positive, all of them, where s (k x 1) is in the section."""
+        return self.plus - s[0], s[0] + self.minus
+
 
 @dataclass(frozen=True, kw_only=True)
 class Disc:
@@ -67,6 +71,10 @@ class Disc:
     def map(self) -> sp.ImmutableMatrix:
         """E of s = E sigma, |sigma| <= 1."""
         return sp.ImmutableMatrix([[self.mu, 0], [0, self.mu]])
+
+    def membership(self, s: sp.MatrixBase) -> tuple[sp.Expr, ...]:
+        """Zero or positive where s (k x 1) is in the section."""
+        return (self.mu**2 - s[0] ** 2 - s[1] ** 2,)
 
     def reach(self, b: sp.MatrixBase) -> sp.Expr:
         """The largest -b.s over the section."""
@@ -99,6 +107,14 @@ class Ellipse:
         c, s = sp.cos(self.angle), sp.sin(self.angle)
         return sp.ImmutableMatrix([[c * self.mu_1, -s * self.mu_2], [s * self.mu_1, c * self.mu_2]])
 
+    def membership(self, s: sp.MatrixBase) -> tuple[sp.Expr, ...]:
+        """Zero or positive, all of them, where s (k x 1) is in the section."""
+        c, d = sp.cos(self.angle), sp.sin(self.angle)
+        along, across = c * s[0] + d * s[1], c * s[1] - d * s[0]
+        inside = (self.mu_1 * self.mu_2) ** 2 - (self.mu_2 * along) ** 2 - (self.mu_1 * across) ** 2
+        # the last two decide where a semi-axis vanishes
+        return inside, self.mu_1**2 - along**2, self.mu_2**2 - across**2
+
     def reach(self, b: sp.MatrixBase) -> sp.Expr:
         """The largest -b.s over the section."""
         return norm(self.map.T * b)
@@ -129,6 +145,11 @@ class Polygon:
                 f"the side of edge {i + 1} of the friction polygon on which {f'vertex {j}' if j else '0'} lies"))
             for i in range(n) for j in range(n + 1) if j not in (i + 1, (i + 1) % n + 1)
         )  # fmt: skip
+
+    def membership(self, s: sp.MatrixBase) -> tuple[sp.Expr, ...]:
+        """Zero or positive, all of them, where s (k x 1) is in the section."""
+        v, n = self.vertices, len(self.vertices)
+        return tuple(_cross(_minus(v[(i + 1) % n], v[i]), _minus(s, v[i])) for i in range(n))
 
     def reach(self, b: sp.MatrixBase) -> sp.Expr:
         """The largest -b.s over the section."""
