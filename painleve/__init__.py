@@ -13,6 +13,7 @@ from painleve.figures import announce
 if TYPE_CHECKING:
     from painleve.asymptotics.certify import CertifyOptions
     from painleve.asymptotics.coulomb import coulomb_solutions
+    from painleve.asymptotics.critical import critical_states
     from painleve.asymptotics.hypotheses import check_hypotheses
     from painleve.asymptotics.limit_set import limit_set
     from painleve.asymptotics.methods import distance
@@ -54,6 +55,7 @@ _HOMES = {
     "classify": "painleve.asymptotics.theorem",
     "collect": "painleve.asymptotics.theorem",
     "coulomb_solutions": "painleve.asymptotics.coulomb",
+    "critical_states": "painleve.asymptotics.critical",
     "derive": "painleve.mechanics.derive",
     "distance": "painleve.asymptotics.methods",
     "draw": "painleve.plotting.draw",
@@ -94,6 +96,7 @@ __all__ = [
     "classify",
     "collect",
     "coulomb_solutions",
+    "critical_states",
     "derive",
     "distance",
     "draw",

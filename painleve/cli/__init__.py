@@ -10,6 +10,7 @@ from typing import NoReturn
 from painleve.cli import (
     check,
     classify,
+    critical,
     derive,
     distance,
     ensemble,
@@ -25,7 +26,7 @@ from painleve.errors import InputError
 
 __all__ = ["main"]
 
-COMMANDS = (scenes, new_scene, derive, check, classify, distance, rate, sweep, study, plot, simulate, ensemble)
+COMMANDS = (scenes, new_scene, derive, check, classify, critical, distance, rate, sweep, study, plot, simulate, ensemble)
 
 
 class _Parser(argparse.ArgumentParser):

@@ -17,7 +17,7 @@ from painleve.mechanics.parse import exact_number, parse_expression
 from painleve.mechanics.scene import NamedState, Scene
 from painleve.mechanics.signs import Sign, exact_sign
 
-__all__ = ["Number", "State", "make_state", "resolve_parameters"]
+__all__ = ["Number", "State", "make_curve", "make_state", "resolve_parameters"]
 
 Number: TypeAlias = str | int | float | Fraction | sp.Expr
 
@@ -98,6 +98,38 @@ def _state(
     return state
 
 
+def make_curve(
+    scene: Scene,
+    along: str,
+    name: str | None = None,
+    *,
+    keys: Mapping[str, Number] | None = None,
+    parameters: Mapping[str, Number] | None = None,
+) -> dict[sp.Symbol, sp.Expr]:
+    """Coordinates, velocities and parameters along the curve on which one state key varies: in that key's symbol.
+
+    The rest is as for make_state, and so are the errors; states of the curve are checked when they are made.
+    """
+    if along not in {key.name for key in scene.keys}:
+        raise InputError(f"scene {scene.name}: no state key {along!r} to go along; keys: "
+                         f"{', '.join(key.name for key in scene.keys)}")  # fmt: skip
+    if along in (keys or {}):
+        raise InputError(f"scene {scene.name}: {along} is given, and so cannot vary; leave it out")
+    named = scene.state(name) if name is not None else None
+    given = dict(named.keys if named else {}) | dict(keys or {})
+    values, formulas, components = _sort_keys(scene, given, free=along)
+    chosen = dict(named.parameters if named else {}) | dict(parameters or {})
+    table = resolve_parameters(scene, chosen, None if formulas else values)
+    point = values | {p.symbol: table[p.name] for p in scene.parameters}
+    for key, formula in formulas.items():
+        point[key] = formula.xreplace(point)
+    rules = {p.symbol: table[p.name] for p in scene.parameters}
+    for c in scene.coordinates:
+        for symbol, own, rule in ((c.symbol, c.name, scene.placement), (c.velocity, f"u_{c.name}", scene.velocity)):
+            rules[symbol] = components.get(own, sp.sympify(rule.get(c.name, 0)).xreplace(point))
+    return rules
+
+
 def resolve_parameters(
     scene: Scene, given: Mapping[str, Number], keys: Mapping[sp.Symbol, sp.Expr] | None = None
 ) -> dict[str, sp.Expr]:
@@ -122,9 +154,10 @@ def resolve_parameters(
 
 
 def _sort_keys(
-    scene: Scene, given: Mapping[str, Number]
+    scene: Scene, given: Mapping[str, Number], free: str | None = None
 ) -> tuple[dict[sp.Symbol, sp.Expr], dict[sp.Symbol, sp.Expr], dict[str, sp.Expr]]:
-    """Natural keys by symbol, with defaults; those whose default is a formula; and raw components by name."""
+    """Natural keys by symbol, with defaults, the free one as its symbol; those whose default is a formula; and raw
+    components by name."""
     raw = {c.name for c in scene.coordinates} | {f"u_{c.name}" for c in scene.coordinates}
     natural = {k.name: k for k in scene.keys}
     for name in given:
@@ -136,7 +169,9 @@ def _sort_keys(
     values: dict[sp.Symbol, sp.Expr] = {}
     formulas: dict[sp.Symbol, sp.Expr] = {}
     for name, key in natural.items():
-        if name in exact:
+        if name == free:
+            values[key.symbol] = key.symbol
+        elif name in exact:
             values[key.symbol] = exact[name]
         elif key.default is not None:
             default = parse_expression(key.default, known, where=f"default of {name}")
@@ -167,7 +202,7 @@ def _label(name: str | None, keys: Mapping[str, Number] | None, parameters: Mapp
 
 
 def _check_range(scene: Scene, name: str, range_: str, value: sp.Expr) -> None:
-    if range_ == "real":
+    if range_ == "real" or value.free_symbols:
         return
     sign = exact_sign(value).sign
     allowed = {Sign.POSITIVE} if range_ == "positive" else {Sign.POSITIVE, Sign.ZERO}

@@ -15,7 +15,7 @@ COORDINATES = (
                latex=r"\varphi"),
 )  # fmt: skip
 KEYS = (
-    StateKey(name="theta", unit="rad", sentence="inclination"),
+    StateKey(name="theta", unit="rad", sentence="inclination", interval=("0", "pi/2")),
     StateKey(name="phi", unit="rad", sentence="azimuth of the rod", default="0"),
     StateKey(name="slip", unit="m/s", sentence="speed of the tip", default="1"),
     StateKey(name="heading", unit="rad", sentence="direction of the tip's velocity against the azimuth (pi: the tip "
