@@ -26,7 +26,9 @@ from painleve.errors import InputError
 
 __all__ = ["main"]
 
-COMMANDS = (scenes, new_scene, derive, check, classify, critical, distance, rate, sweep, study, plot, simulate, ensemble)
+COMMANDS = (
+    scenes, new_scene, derive, check, classify, critical, distance, rate, sweep, study, plot, simulate, ensemble,
+)  # fmt: skip
 
 
 class _Parser(argparse.ArgumentParser):
