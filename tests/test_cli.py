@@ -136,7 +136,8 @@ def test_the_error_for_a_state_off_the_constraint_says_by_how_much(capsys):
 
 
 COMMANDS = [
-    "scenes", "derive", "check", "classify", "distance", "rate", "sweep", "study", "plot", "simulate", "ensemble",
+    "scenes", "new-scene", "derive", "check", "classify", "distance", "rate", "sweep", "study", "plot", "simulate",
+    "ensemble",
 ]  # fmt: skip
 
 

@@ -36,6 +36,7 @@ ONE_VARIABLE = {
     "inverses": sp.atan(X) + sp.asin(X / 2) - sp.acos(X**2),
     "exponential and logarithm": sp.exp(-(X**2)) * sp.log(1 + X),
     "hyperbolic": sp.sinh(X) + sp.cosh(2 * X) * sp.tanh(X),
+    "hyperbolic with circular": sp.cosh(X) * sp.sin(X) + sp.atan(sp.sinh(X)),
     "absolute value of something positive": sp.Abs(X + 1) * X,
     "absolute value of something negative": sp.Abs(X - 1) * sp.sin(X),
     "secant": sp.sec(X) + sp.csc(X),
