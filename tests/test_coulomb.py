@@ -18,6 +18,7 @@ from coulomb_contacts import (
 import painleve
 from painleve.asymptotics.coulomb import CoulombSolutions, Enumeration, coulomb_solutions
 from painleve.core.codes import Branch
+from painleve.core.conic_law import disc_impulse
 from painleve.core.coulomb import COLUMNS, MOST_SOLUTIONS, coulomb_disc
 from painleve.core.law import planar_impulse
 from painleve.errors import InputError
@@ -36,6 +37,12 @@ def impulses(found: CoulombSolutions) -> np.ndarray:
     """(n, 1 + k), sorted."""
     table = np.array([solution.impulse for solution in found.solutions])
     return table[np.lexsort(table.T.round(9))]
+
+
+def project(contact: Numbers) -> np.ndarray:
+    """(3,) the impulse of law (7)."""
+    G = contact.G
+    return np.array(disc_impulse(G[0, 0], contact.p, G[0, 1], G[0, 2], G[1, 1], G[1, 2], G[2, 2], *contact.v)[:3])
 
 
 def on_the_circle(angle: float) -> tuple[Fraction, Fraction]:
@@ -270,6 +277,19 @@ def test_a_planar_contact_in_space_has_its_planar_solutions_and_others_in_mirror
         outside = table[np.abs(table[:, 2]) >= 1e-12]
         mirrored = outside * [1, 1, -1]
         np.testing.assert_allclose(np.sort(mirrored[:, 2]), np.sort(outside[:, 2]), rtol=1e-12)
+
+
+def test_where_the_normal_and_the_tangents_are_uncoupled_coulomb_and_the_projection_are_one_law() -> None:
+    for contact in random_numbers(13, 400):
+        G, v = contact.G.copy(), contact.v * [-1.0 if contact.v[0] > 0.0 else 1.0, 1.0, 1.0]
+        G[0, 1:] = G[1:, 0] = 0.0
+        (solution,) = Numbers(G, v).solve()
+        *r, branch = disc_impulse(G[0, 0], G[0, 0], 0.0, 0.0, G[1, 1], G[1, 2], G[2, 2], *v)
+        assert solution[0] == branch
+        np.testing.assert_allclose(solution[1:4], r, rtol=1e-6, atol=1e-9 * r[0])
+    coupled = [n for n in random_numbers(14, 400, spread=0.5) if n.v[0] < 0.0 and len(n.slips()) == 1 == len(n.solve())]
+    apart = [np.abs(n.slips()[0] - project(n)).max() > 1e-3 * n.slips()[0, 0] for n in coupled]
+    assert sum(apart) > len(apart) / 2  # coupled, they are two laws
 
 
 # --- invariance ------------------------------------------------------------------------------------------------------

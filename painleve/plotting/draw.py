@@ -17,6 +17,7 @@ from painleve.plotting.convergence import draw_convergence
 from painleve.plotting.distances import draw_distances
 from painleve.plotting.gamma_map import draw_gamma_map
 from painleve.plotting.hard_cases import draw_near_critical, draw_rounding, draw_sampled_bound
+from painleve.plotting.laws import draw_laws
 from painleve.plotting.members import draw_members
 from painleve.plotting.plurality import draw_initial_layer, draw_jam_law, draw_step_sizes
 from painleve.plotting.reference import draw_reference
@@ -42,6 +43,7 @@ DRAWINGS: Mapping[str, Callable[[xr.Dataset], Figure]] = MappingProxyType({
     "rounding": draw_rounding,
     "near_critical": draw_near_critical,
     "convergence": draw_convergence,
+    "laws": draw_laws,
     "reference": draw_reference,
 })  # fmt: skip
 # Without dates, the same dataset gives the same bytes.

@@ -1,0 +1,111 @@
+"""The study of the two laws, in its quick form, and its maps against exact arithmetic and the rod's closed forms."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from painleve.asymptotics.limit_set import limit_set
+from painleve.errors import InputError
+from painleve.mechanics.library import load_scene
+from painleve.mechanics.state import State, make_state
+from painleve.store import load
+from painleve.sweep import StudyResult
+from painleve.sweep.laws import map_laws
+
+
+def load_study() -> ModuleType:
+    path = Path(__file__).parents[1] / "studies" / "laws.py"
+    spec = importlib.util.spec_from_file_location("study_laws", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path]:
+    folder = tmp_path_factory.mktemp("laws")
+    return load_study().run(folder, quick=True), folder
+
+
+@pytest.fixture(scope="module")
+def maps(finished: tuple[StudyResult, Path]) -> xr.Dataset:
+    return load(finished[1] / "laws.h5")
+
+
+def rod(**keys: object) -> State:
+    return make_state(load_scene("spatial_rod"), keys={"theta": "atan(2)", **keys})
+
+
+def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyResult, Path]) -> None:
+    result, folder = finished
+    assert {path.name for path in folder.iterdir()} == {"laws.h5", "laws.pdf", "laws.png"}
+    assert {path.name for path in result.files} == {"laws.h5", "laws.pdf", "laws.png"}
+    assert all(path.stat().st_size > 10_000 for path in result.files)
+
+
+def test_the_closed_forms_hold_on_the_whole_map_and_exact_counts_agree(finished: tuple[StudyResult, Path]) -> None:
+    rows = finished[0].data["rows"]
+    assert [row["edges_missed"] for row in rows] == [None, None, None, 0] * 2
+    assert all(row["agree"] == row["checks"] > 0 for row in rows)
+    assert "at all but 0 points" in finished[0].status
+
+
+@pytest.mark.parametrize(("row", "largest", "three"), [(3, 1.08, 0.064), (7, 1.66, 0.037)])
+def test_the_tangential_figures_are_those_expected(
+    row: int, largest: float, three: float, finished: tuple[StudyResult, Path]
+) -> None:
+    found = finished[0].data["rows"][row]
+    assert found["approach"] == 0.0
+    assert found["largest"] == pytest.approx(largest, rel=0.03)
+    assert found["shares"]["3"] == pytest.approx(three, abs=0.004)
+
+
+def test_impacts_have_one_solution_or_three_and_nothing_else(maps: xr.Dataset) -> None:
+    impacts = maps["solutions"].where(maps["approach"] < 0.0, 1)
+    assert set(np.unique(impacts)) == {1.0, 3.0}
+
+
+def test_a_rod_that_slips_along_b_has_one_law_and_a_mirrored_slip_mirrored_distances(maps: xr.Dataset) -> None:
+    assert float(maps["nearest"].sel(direction=0.0, method="nearest").max()) < 1e-9
+    np.testing.assert_allclose(maps["nearest"], maps["nearest"][..., ::-1], atol=1e-9)
+    np.testing.assert_array_equal(maps["solutions"], maps["solutions"][..., ::-1])
+
+
+def test_coulomb_s_jumps_end_where_sticking_leaves_the_cone_of_the_rod(maps: xr.Dataset) -> None:
+    """By hand for the uniform rod: |tan psi| <= 4 sqrt(mu^2 - mu_c^2)/(mu_c C_11 - |b|), at tan theta = 2."""
+    mu_c, C_11, coupling = 4.0 / 3.0, 1.0 + 3.0 * 4.0 / 5.0, 3.0 * 2.0 / 5.0
+    tangential = maps.isel(state=1).sel(approach=0.0)
+    angle, mu = np.meshgrid(tangential["direction"], tangential["friction"])
+    inside = mu > mu_c
+    reach = np.arctan(4.0 * np.sqrt(np.where(inside, mu**2 - mu_c**2, 0.0)) / (mu_c * C_11 - coupling))
+    np.testing.assert_array_equal(tangential["solutions"] > 1, inside & (np.abs(angle) <= reach))
+
+
+@pytest.mark.parametrize(("heading", "mu"), [("pi", "2"), ("2*pi/3", "3/2"), ("3*pi/4", "3/2"), ("pi/2", "3")])
+def test_a_map_is_as_far_from_the_projection_as_the_exact_limit_sets_are(heading: str, mu: str) -> None:
+    state = make_state(load_scene("spatial_rod"), keys={"theta": "atan(2)", "heading": heading}, parameters={"mu": mu})
+    angle = math.atan2(-state.number(state.u[1]), -state.number(state.u[0]))  # b points against the first axis
+    mapped = map_laws([state], approaches=[0.0], frictions=[state.number(state.parameters["mu"])], directions=3601)
+    point = mapped.isel(state=0, approach=0, friction=0).sel(direction=angle, method="nearest")
+    coulomb, projected = limit_set(state, "coulomb"), limit_set(state)
+    reached = np.array([[state.number(x) for x in jump.velocity] for jump in coulomb.jumps])
+    expected = np.linalg.norm(reached - projected.u_plus, axis=1).min()
+    assert len(coulomb.jumps) == int(point["solutions"])
+    assert float(point["nearest"]) == pytest.approx(expected, abs=1e-10)
+
+
+def test_a_map_of_other_scenes_or_of_departures_is_refused_in_one_line() -> None:
+    planar = make_state(load_scene("slender_rod"), "paradox")
+    with pytest.raises(InputError, match="section of friction is a disc"):
+        map_laws([planar], approaches=[0.0], frictions=[1.0])
+    with pytest.raises(InputError, match="approaches v_n <= 0"):
+        map_laws([rod()], approaches=[0.1], frictions=[1.0])
