@@ -70,12 +70,15 @@ class _Enclosure:
 def certify_distance(limit: LimitSet, eps: float, options: CertifyOptions | None = None) -> Distance:
     """Enclosures of both excesses; the relative widths that were reached are in the ending.
 
-    Raises InputError for eps <= 0, for a state whose limit set is undecided, for scenes with more than two shape
-    coordinates, and where the ball is so large that expansions about its centre do not converge.
+    Raises InputError for eps <= 0, a state whose limit set is undecided, friction in space, scenes with more than two
+    shape coordinates, and where the ball is so large that expansions about its centre do not converge.
     """
     options, eps = options or CertifyOptions(), check_eps(eps)
     if limit.kind == "undecided":
         raise InputError(f"state {limit.state.label}: no distance to a limit set that is undecided: {limit.reason}")
+    if limit.state.scene.friction_dimension == 2:
+        raise InputError(f"certify: scene {limit.state.scene.name} has friction in space, which this method does not "
+                         "search; use the method sample")  # fmt: skip
     problem = make_local_problem(limit)
     near = neighbours(limit.state, limit.edge) if limit.critical else None
     apart = near is not None and near.kind is Neighbourhood.ISOLATED and slips_nowhere(problem, eps)

@@ -29,7 +29,8 @@ class LimitSet:
 
     `gamma` is the sign of gamma(q), `multiplier` the normal impulse of the jump from u- to u_tilde (0 if there is none)
     and `tangential` its friction impulse (k,). `edge` says on which edge of the cone gamma is attained
-    (painleve.mechanics.derive.Derivation.edge_direction); 0 if gamma > 0 or there is no friction.
+    (painleve.mechanics.derive.Derivation.edge_direction); 0 if gamma > 0 or there is no friction. `after`: what the tip
+    does after the jump, "" if there is none.
     """
 
     state: State
@@ -41,6 +42,7 @@ class LimitSet:
     tangential: tuple[sp.Expr, ...]
     u_tilde: tuple[sp.Expr, ...]
     reason: str
+    after: str = ""
 
     @property
     def critical(self) -> bool:
@@ -113,13 +115,15 @@ def _projected(state: State) -> LimitSet:
         return _limit(state, "point", gamma, edge, None, "u_tilde = u-: the slip is not in the destabilising sense")
     if gamma.sign is Sign.NEGATIVE:
         reason = f"gamma < 0: stay at u- or jump to u_tilde, where the tip {least.after}"
-        return _limit(state, "pair", gamma, edge, least.impulse, reason)
-    return _limit(state, "segment", gamma, edge, least.impulse, "gamma = 0: every velocity between u- and u_tilde")
+        return _limit(state, "pair", gamma, edge, least.impulse, reason, least.after)
+    reason = "gamma = 0: every velocity between u- and u_tilde"
+    return _limit(state, "segment", gamma, edge, least.impulse, reason, least.after)
 
 
 def _limit(
-    state: State, kind: Kind, gamma: Signed, edge: Edge, impulse: tuple[sp.Expr, ...] | None, reason: str
-) -> LimitSet:
+    state: State, kind: Kind, gamma: Signed, edge: Edge, impulse: tuple[sp.Expr, ...] | None, reason: str,
+    after: str = "",
+) -> LimitSet:  # fmt: skip
     d, k = derive(state.scene), state.scene.friction_dimension
     u_tilde, exact = state.u, (sp.Integer(0),) * (1 + k)
     if impulse is not None:
@@ -129,5 +133,5 @@ def _limit(
     value = 0.0 if gamma.sign is Sign.ZERO else state.number(d.gamma)
     return LimitSet(
         state=state, kind=kind, gamma=gamma, gamma_value=value, edge=edge, multiplier=exact[0], tangential=exact[1:],
-        u_tilde=u_tilde, reason=reason,
+        u_tilde=u_tilde, reason=reason, after=after,
     )  # fmt: skip

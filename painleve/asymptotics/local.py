@@ -17,6 +17,9 @@ import numpy as np
 import sympy as sp
 
 from painleve.asymptotics.limit_set import LimitSet
+from painleve.asymptotics.space_base import space_base
+from painleve.core.polygon_offset import PolygonBase
+from painleve.core.space_offset import SpaceBase
 from painleve.core.taylor import Polynomials, sparse_polynomials
 from painleve.kernels.compiled import Kernels, make_kernels
 from painleve.mechanics.balls import ball
@@ -51,7 +54,8 @@ class LocalProblem:
     """The state and its limit set as the kernels want them; arrays are float64, rounded from exact values.
 
     base: the rows at q; u: u-; direction: unit vector from u- to u_tilde (0 without a jump), length: its distance;
-    impulse: the sticking impulse at the base; multiplier, critical_edge: see painleve.core.offset.planar_split;
+    impulse: the sticking impulse at the base, in space all of painleve.core.space_offset.SpaceBase or of
+    painleve.core.polygon_offset.PolygonBase; multiplier, critical_edge: see painleve.core.offset.planar_split;
     carried: norm of dg with respect to the carried coordinates, and its direction in q.
     """
 
@@ -63,7 +67,7 @@ class LocalProblem:
     base: np.ndarray
     direction: np.ndarray
     length: float
-    impulse: np.ndarray
+    impulse: np.ndarray | SpaceBase | PolygonBase
     multiplier: float
     critical_edge: int
     carried: float
@@ -171,7 +175,7 @@ def make_local_problem(limit: LimitSet) -> LocalProblem:
     table = [[float(expanded[r].terms.get(m, flint.arb(0)).mid()) for m in powers] for r in rows.varying]
     base = np.array([float(jet.constant().mid()) for jet in expanded])
     if limit.critical:
-        base[rows.index("edge_plus" if limit.edge == 1 else "edge_minus")] = 0.0
+        base[rows.edge(limit.edge)] = 0.0
     base[rows.index("g")] = 0.0
     jump = limit.jump
     length = float(np.linalg.norm(jump))
@@ -201,9 +205,11 @@ def _floats(limit: LimitSet, values: Sequence[sp.Expr]) -> np.ndarray:
     return np.array([limit.state.number(value) for value in values])
 
 
-def _base_impulse(limit: LimitSet) -> np.ndarray:
+def _base_impulse(limit: LimitSet) -> np.ndarray | SpaceBase | PolygonBase:
     """-G^-1 v_c at the base state, whether or not it is in the cone (0 without friction)."""
     state, d = limit.state, make_kernels(limit.state.scene).derivation
+    if state.scene.friction_dimension == 2:
+        return space_base(limit, BITS)
     if d.b is None or d.C is None:
         return np.zeros(2)
     slip = (state.scene.tangents.T * sp.Matrix(state.scene.u))[0, 0]

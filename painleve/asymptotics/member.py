@@ -14,6 +14,7 @@ import flint
 import numpy as np
 
 from painleve.asymptotics.local import BITS, LocalProblem
+from painleve.asymptotics.space_member import Contact, conic_impulse, polygon_impulse
 from painleve.core.codes import Branch
 from painleve.mechanics.balls import ball, make_ball_function
 
@@ -121,6 +122,8 @@ def _law(problem: LocalProblem, dq: Balls, dv: Balls) -> tuple[Balls, Branch]:
         return dv, Branch.FREE
     if problem.limit.state.scene.friction is None:
         return [x - y * v_n / a for x, y in zip(dv, Y_n, strict=True)], Branch.FRICTIONLESS
+    if problem.limit.state.scene.friction_dimension == 2:
+        return _law_in_space(problem, rows, v, v_n, dv, at_base)
     H, Y_t = rows[3 + 2 * d : 3 + 3 * d], rows[3 + 3 * d : 3 + 4 * d]
     b, C, minus, mu_plus, mu_minus = rows[3 + 4 * d :]
     plus, v_t = rows[2 + 2 * d], _dot(H, v)
@@ -135,6 +138,24 @@ def _law(problem: LocalProblem, dq: Balls, dv: Balls) -> tuple[Balls, Branch]:
             r_n, r_t, branch = -v_n / edge, -s * v_n / edge, slip
     moved = zip(dv, Y_n, Y_t, strict=True)
     return [x + y * r_n + z * r_t for x, y, z in moved], branch
+
+
+def _law_in_space(
+    problem: LocalProblem, rows: Balls, v: Balls, v_n: flint.arb, dv: Balls, at_base: bool
+) -> tuple[Balls, Branch]:
+    d = problem.dimension
+    H_1, H_2, Y_1, Y_2 = (rows[3 + k * d : 3 + (k + 1) * d] for k in range(2, 6))
+    b_1, b_2, *C = rows[3 + 6 * d : 8 + 6 * d]
+    contact = Contact(a=rows[1 + 2 * d], b=(b_1, b_2), C=C, v=(v_n, _dot(H_1, v), _dot(H_2, v)))
+    critical, n = problem.critical_edge if at_base else 0, len(rows[8 + 6 * d :]) // 3
+    if n:
+        p, s = rows[8 + 6 * d : 8 + 6 * d + n], rows[8 + 6 * d + n :]
+        known = [flint.arb(0) if i + 1 == critical else p[i] for i in range(n)]
+        r_n, r_1, r_2, branch = polygon_impulse(contact, [s[2 * i : 2 * i + 2] for i in range(n)], known)
+    else:
+        r_n, r_1, r_2, branch = conic_impulse(contact, flint.arb(0) if critical else rows[2 + 2 * d])
+    moved = zip(dv, rows[1 + d : 1 + 2 * d], Y_1, Y_2, strict=True)
+    return [x + y * r_n + z_1 * r_1 + z_2 * r_2 for x, y, z_1, z_2 in moved], branch
 
 
 def _certain(yes: bool, no: bool, what: str) -> bool:

@@ -52,11 +52,15 @@ def optimise_distance(limit: LimitSet, eps: float, options: OptimiseOptions | No
     """Both excesses by optimisation: e(A_eps, A) is bounded from below by a true member at the maximum found, whose
     estimate and error are in the settings; e(A, A_eps) from above by witnesses, or by the nearest members found.
 
-    Raises InputError for eps <= 0, for a state whose limit set is undecided, and for more than two shape coordinates.
+    Raises InputError for eps <= 0, a state whose limit set is undecided, friction in space, and more than two shape
+    coordinates.
     """
     options, eps = options or OptimiseOptions(), check_eps(eps)
     if limit.kind == "undecided":
         raise InputError(f"state {limit.state.label}: no distance to a limit set that is undecided: {limit.reason}")
+    if limit.state.scene.friction_dimension == 2:
+        raise InputError(f"optimise: scene {limit.state.scene.name} has friction in space, which this method does not "
+                         "search; use the method sample")  # fmt: skip
     problem = make_local_problem(limit)
     if len(problem.shape) > 2:
         raise InputError(f"optimise: scene {limit.state.scene.name} has {len(problem.shape)} coordinates on which the "

@@ -197,8 +197,12 @@ def sample_members(limit: LimitSet, eps: float, options: SampleOptions | None = 
 
 def _has(problem: LocalProblem, branch: Branch) -> bool:
     """Whether the scene can take that branch at all."""
-    frictionless = problem.limit.state.scene.friction is None
-    return branch is Branch.FREE or frictionless == (branch is Branch.FRICTIONLESS)
+    contact = {
+        0: (Branch.FRICTIONLESS,),
+        1: (Branch.STICK, Branch.SLIP_PLUS, Branch.SLIP_MINUS),
+        2: (Branch.STICK, Branch.SLIP),
+    }
+    return branch is Branch.FREE or branch in contact[problem.limit.state.scene.friction_dimension]
 
 
 def _lanes(stream: _Stream) -> Iterable[_Tally]:

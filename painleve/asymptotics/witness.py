@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import flint
 import numpy as np
@@ -17,12 +18,16 @@ import numpy as np
 from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.local import BITS, LocalProblem, make_local_problem
 from painleve.asymptotics.member import Member, base_balls, distance_to_point, make_member, row_balls
+from painleve.asymptotics.space_witness import path_bound, path_members
 from painleve.core.codes import Branch
 from painleve.errors import InputError
 
 __all__ = ["Family", "Witness", "find_family", "find_witness"]
 
-SMALLEST_STEP = 2.0**-40  # of the ball's radius: how far configurations are drawn towards q
+# Of the ball's radius: by what, and how far, configurations are drawn towards q. In space a path over q_eps comes
+# within sqrt(gamma(q_eps)) of A only: it takes configurations so much nearer.
+STEP, SMALLEST_STEP = 2.0**-1, 2.0**-40
+SPACE_STEP, SMALLEST_SPACE_STEP = 2.0**-8, 2.0**-240
 TILTS = (0.5, 0.1, 0.01)  # towards penetration, where a direction alone would leave contact
 
 
@@ -39,10 +44,11 @@ class Witness:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Family:
-    """Members over one q_eps that shadow the whole segment: lambda_bar -> S(q_eps, v(lambda_bar)) is affine.
+    """Members over one q_eps that shadow the whole segment.
 
-    `bound`: upper bound on the distance of any point of A to these members, hence on e(A, A_eps). The distance between
-    two affine images is convex, so the two ends decide.
+    `bound`: upper bound on the distance of any point of A to these members, hence on e(A, A_eps). In the plane
+    lambda_bar -> S(q_eps, v(lambda_bar)) is affine, and the distance between two affine images is convex: the two ends
+    decide. In space the path is curved (painleve.asymptotics.space_witness).
     """
 
     first: Member
@@ -114,20 +120,21 @@ def _towards_sticking(problem: LocalProblem, eps: float, within: float) -> tuple
     """At q itself, v_n -> 0-: the tip sticks, and S is as near to u_tilde as v is to u-, up to a constant."""
     normal = problem.base[1 : 1 + problem.dimension]
     inward = normal / np.linalg.norm(normal)
-    size = 0.5 * eps
+    size, ratio = 0.5 * eps, SPACE_STEP if _in_space(problem) else STEP
     while size > 0.0:
         member = make_member(problem, _zeros(problem), [flint.arb(float(-size * x)) for x in inward])
         if distance_to_point(problem, member, 1.0)[1] <= within:
             return member, "q_eps = q and v_n -> 0-"
-        size *= 0.5
+        size *= ratio
     raise ArithmeticError(f"no sticking member within {within} of u_tilde: the distance asked for is below rounding")
 
 
 def _positive_neighbours(problem: LocalProblem, eps: float) -> Iterator[list[flint.arb]]:
     """Exact offsets of configurations in the ball, nearer and nearer to q, with g >= 0 and gamma > 0 proved."""
     directions = list(_directions(problem))
+    ratio, smallest = (SPACE_STEP, SMALLEST_SPACE_STEP) if _in_space(problem) else (STEP, SMALLEST_STEP)
     step = 0.5
-    while step >= SMALLEST_STEP:
+    while step >= smallest:
         for direction, follow in directions:
             dq = [flint.arb(float(step * eps * x)) for x in direction]
             if follow:
@@ -135,7 +142,7 @@ def _positive_neighbours(problem: LocalProblem, eps: float) -> Iterator[list[fli
             if _admits_slip(problem, dq) and _inside(dq, eps):
                 yield dq
                 break
-        step *= 0.5
+        step *= ratio
 
 
 def _directions(problem: LocalProblem) -> Iterator[tuple[np.ndarray, bool]]:
@@ -167,8 +174,7 @@ def _unit(x: np.ndarray) -> np.ndarray:
 def _derivatives(problem: LocalProblem) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Gradient and Hessian of the critical edge's compliance and of g, in all coordinates."""
     rows = problem.kernels.rows
-    edge = rows.index("edge_plus" if problem.limit.edge == 1 else "edge_minus")
-    grad_p, form_p = _second_order(problem, edge)
+    grad_p, form_p = _second_order(problem, rows.edge(problem.limit.edge))
     _, form_g = _second_order(problem, rows.index("g"))
     return grad_p, form_p, -problem.base[1 : 1 + problem.dimension], form_g
 
@@ -202,8 +208,7 @@ def _onto_constraint(problem: LocalProblem, dq: list[flint.arb], size: float) ->
 
 def _admits_slip(problem: LocalProblem, dq: list[flint.arb]) -> bool:
     rows = row_balls(problem, dq)
-    edge = problem.kernels.rows.index("edge_plus" if problem.limit.edge == 1 else "edge_minus")
-    return bool(rows[0] >= 0) and bool(rows[edge] > 0)
+    return bool(rows[0] >= 0) and bool(rows[problem.kernels.rows.edge(problem.limit.edge)] > 0)
 
 
 def _inside(x: list[flint.arb], eps: float) -> bool:
@@ -213,12 +218,12 @@ def _inside(x: list[flint.arb], eps: float) -> bool:
 
 def _slipping_velocity(problem: LocalProblem, dq: list[flint.arb], fraction: float) -> list[flint.arb]:
     """The least dv with v_n = -fraction lambda_tilde (a + s b)(q_eps)."""
-    d, edge = problem.dimension, "edge_plus" if problem.limit.edge == 1 else "edge_minus"
+    d, edge = problem.dimension, problem.kernels.rows.edge(problem.limit.edge)
     with flint.ctx.workprec(BITS):
         rows, (_, _, u), impulse = row_balls(problem, dq), base_balls(problem), problem.exact_multiplier
         w_n = rows[1 : 1 + d]
         v_n = sum((x * y for x, y in zip(w_n, u, strict=True)), flint.arb(0))
-        excess = v_n + flint.arb(float(fraction)) * impulse * rows[problem.kernels.rows.index(edge)]
+        excess = v_n + flint.arb(float(fraction)) * impulse * rows[edge]
         squared = sum((x * x for x in w_n), flint.arb(0))
         return [flint.arb((-excess * x / squared).mid()) for x in w_n]
 
@@ -233,8 +238,24 @@ def _slipping_member(problem: LocalProblem, dq: list[flint.arb], fraction: float
         return None
 
 
+def _in_space(problem: LocalProblem) -> bool:
+    """Whether friction is in space."""
+    return problem.limit.state.scene.friction_dimension == 2
+
+
+def _path_over(problem: LocalProblem, dq: list[flint.arb], eps: float) -> Family | None:
+    """A path of members over one configuration that shadows the segment."""
+    found = path_members(problem, dq, partial(_slipping_member, eps=eps))
+    if found is None:
+        return None
+    first, last, reach = found
+    return Family(first=first, last=last, bound=path_bound(problem, dq, first, last, reach))
+
+
 def _family_over(problem: LocalProblem, dq: list[flint.arb], eps: float) -> Family | None:
     """Members over one configuration from lambda_bar = 0+ to nearly lambda_tilde, all of them slipping."""
+    if _in_space(problem):
+        return _path_over(problem, dq, eps)
     slip = Branch.SLIP_PLUS if problem.limit.edge == 1 else Branch.SLIP_MINUS
     size = max(abs(float(x.mid())) for x in dq)
     first = _slipping_member(problem, dq, size, eps)

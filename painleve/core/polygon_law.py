@@ -61,8 +61,17 @@ def sticks(vertices, p, nu, X, Y, W):
 @jit
 def nearest_on_boundary(vertices, p, Q_11, Q_12, Q_22, w_1, w_2, nu, X, Y, W):
     """(r_n, r_1, r_2, branch) of the point of least energy on the visible edges, or where there are none on all."""
+    i, j, x_i, x_j, branch = nearest_edge(vertices, p, Q_11, Q_12, Q_22, w_1, w_2, nu, X, Y, W)
+    r_1 = x_i * vertices[i, 0] + x_j * vertices[j, 0]
+    return x_i + x_j, r_1, x_i * vertices[i, 1] + x_j * vertices[j, 1], branch
+
+
+@jit
+def nearest_edge(vertices, p, Q_11, Q_12, Q_22, w_1, w_2, nu, X, Y, W):
+    """(i, j, x_i, x_j, branch): the same point as x_i (1, s_i) + x_j (1, s_j)."""
     n = len(p)
-    best_n, best_1, best_2, found, branch = 0.0, 0.0, 0.0, False, SLIP
+    best_1, best_2, found, branch = 0.0, 0.0, False, SLIP
+    best_i, best_j, best_x_i, best_x_j = 0, 0, 0.0, 0.0
     for k in range(n):
         i, j = k, (k + 1) % n
         outside = depth(vertices, p, i, j, nu, X, Y, W)
@@ -85,6 +94,7 @@ def nearest_on_boundary(vertices, p, Q_11, Q_12, Q_22, w_1, w_2, nu, X, Y, W):
         step_1, step_2, mean_1, mean_2 = r_1 - best_1, r_2 - best_2, 0.5 * (r_1 + best_1), 0.5 * (r_2 + best_2)
         change = step_1 * (Q_11 * mean_1 + Q_12 * mean_2 + w_1) + step_2 * (Q_12 * mean_1 + Q_22 * mean_2 + w_2)
         if not found or change < 0.0:
-            found, best_n, best_1, best_2 = True, x_i + x_j, r_1, r_2
+            found, best_1, best_2 = True, r_1, r_2
+            best_i, best_j, best_x_i, best_x_j = i, j, x_i, x_j
             branch = STICK if outside == 0.0 and 0.0 < x_j < farthest else SLIP
-    return best_n, best_1, best_2, branch
+    return best_i, best_j, best_x_i, best_x_j, branch

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from painleve.errors import InputError
 from painleve.kernels.files import load_generated
 from painleve.kernels.rows import Rows, rows_of
 from painleve.kernels.source import scene_source
@@ -40,8 +39,6 @@ class Kernels:
 @lru_cache(maxsize=64)
 def make_kernels(scene: Scene) -> Kernels:
     """Generate and load a scene's kernels; compiled at first call, from the disk cache in later processes."""
-    if scene.friction_dimension > 1:
-        raise InputError(f"scene {scene.name}: the compiled law knows friction in the plane only")
     derivation = derive(scene)
     rows = rows_of(derivation)
     text = scene_source(scene, rows, derivation.shape)

@@ -7,10 +7,12 @@ minus their base values: the thing to compare with), `law_block` (S relative to 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
+from painleve.kernels.law_terms import Names, total, velocity_difference
 from painleve.kernels.printing import assignments, indent, renamed, used
 from painleve.kernels.rows import Rows
+from painleve.kernels.space_source import law_call, space_imports, space_lines
 from painleve.mechanics.scene import Scene
 
 __all__ = ["scene_source"]
@@ -26,13 +28,15 @@ import math
 import numpy as np
 
 from painleve._jit import jit
-from painleve.core.law import FREE, FRICTIONLESS, law_from_rows
-from painleve.core.offset import planar_split
+{law}
 from painleve.core.reduce import reduce_block
 from painleve.core.sampling import BLOCK, UNIFORM, sample_block
 from painleve.core.taylor import monomial_block, polynomial_block
 
 '''
+
+PLANAR_IMPORTS = """from painleve.core.law import FREE, FRICTIONLESS, law_from_rows
+from painleve.core.offset import planar_split"""
 
 # The same for every scene, but compiled with it: a compiled function that is passed as an argument is compiled anew
 # in every process.
@@ -80,16 +84,18 @@ def law_at(q, p, v, result):
     """S(q, v) by plain evaluation; returns the branch."""
     rows = np.empty({row_count})
     rows_at(q, p, rows)
-    return law_from_rows(rows, {dimension}, {planar}, v, result)
+    return {law}
 '''
 
 
 def scene_source(scene: Scene, rows: Rows, shape: Sequence[int]) -> str:
     """The source text of a scene's kernels."""
     varying = ", ".join(rows.names[r] for r in rows.varying) or "none"
-    header = HEADER.format(name=scene.name, rows=", ".join(rows.names), varying=varying)
+    imports = space_imports(scene) or PLANAR_IMPORTS
+    header = HEADER.format(name=scene.name, rows=", ".join(rows.names), varying=varying, law=imports)
+    planar = f"law_from_rows(rows, {scene.dimension}, {scene.friction is not None}, v, result)"
     lane = LANE.format(dimension=scene.dimension, shape=len(shape), varying_count=len(rows.varying),
-                       row_count=len(rows.names), planar=scene.friction is not None)  # fmt: skip
+                       row_count=len(rows.names), law=law_call(scene) or planar)  # fmt: skip
     parts = [_rows_at(scene, rows), _varying_block(scene, rows, shape), _law_block(scene, rows), lane]
     return header + "\n\n".join(parts)
 
@@ -117,83 +123,42 @@ def _varying_block(scene: Scene, rows: Rows, shape: Sequence[int]) -> str:
     return "@jit\ndef varying_block(dq, q, p, base, values):\n" + body
 
 
-class _Names:
-    """How a row's value and its difference from the base are written in the law's loop."""
-
-    def __init__(self, rows: Rows) -> None:
-        self.rows = rows
-        self.slot = {r: k for k, r in enumerate(rows.varying)}
-
-    def is_zero(self, name: str) -> bool:
-        return self.rows.expressions[self.rows.index(name)] == 0
-
-    def difference(self, name: str) -> str | None:
-        r = self.rows.index(name)
-        return f"d_{name}" if r in self.slot else None
-
-    def difference_or_zero(self, name: str) -> str:
-        return self.difference(name) or "0.0"
-
-    def loads(self) -> list[str]:
-        lines = []
-        for r, k in self.slot.items():
-            name = self.rows.names[r]
-            lines += [f"d_{name} = values[{k}, i]", f"{name} = base_{name} + d_{name}"]
-        return lines
-
-    def hoisted(self) -> list[str]:
-        return [
-            f"base_{n} = base[{r}]" if r in self.slot else f"{n} = base[{r}]"
-            for r, n in enumerate(self.rows.names)
-            if self.rows.expressions[r] != 0
-        ]
-
-
-def _sum(terms: Iterable[str]) -> str:
-    return " + ".join(terms) or "0.0"
-
-
-def _velocity_difference(names: _Names, prefix: str, axes: Sequence[str]) -> str:
-    """w . v - w_base . u- as sum of dw u- and w dv: no difference of large numbers."""
-    terms = []
-    for j, x in enumerate(axes):
-        name = f"{prefix}_{x}"
-        if names.difference(name):
-            terms.append(f"d_{name}*u_{j}")
-        if not names.is_zero(name):
-            terms.append(f"{name}*dv_{j}")
-    return _sum(terms)
-
-
 def _law_block(scene: Scene, rows: Rows) -> str:
     axes = [c.name for c in scene.coordinates]
-    names = _Names(rows)
+    names = Names(rows)
     before = [f"u_{j} = u[{j}]" for j in range(len(axes))] + [f"k_{j} = direction[{j}]" for j in range(len(axes))]
     before += names.hoisted()
     inside = [f"dv_{j} = dv[{j}, i]" for j in range(len(axes))] + names.loads()
-    inside.append(f"v_n = {_velocity_difference(names, 'w', axes)}")
+    inside.append(f"v_n = {velocity_difference(names, 'w', axes)}")
     inside.append(f"hit = (v_n < 0.0) & ({names.difference_or_zero('g')} + room[i] >= 0.0)")
-    inside += _planar_lines(names, axes) if scene.friction is not None else _frictionless_lines(names, axes)
-    inside.append("dot = " + _sum(f"z_{j}*k_{j}" for j in range(len(axes))))
+    inside += _contact_lines(scene, names, axes)
+    inside.append("dot = " + total(f"z_{j}*k_{j}" for j in range(len(axes))))
     inside += [f"z_{j} -= dot*k_{j}" for j in range(len(axes))]
     inside += [
         "branch[i] = code",
         "along[i] = dot + tau*length",
         "beyond[i] = dot + (tau - 1.0)*length",
-        "across2[i] = " + _sum(f"z_{j}*z_{j}" for j in range(len(axes))),
+        "across2[i] = " + total(f"z_{j}*z_{j}" for j in range(len(axes))),
     ]
     signature = (
         "@jit\ndef law_block(values, room, dv, base, u, direction, length, impulse, multiplier, critical_edge,\n"
         "              branch, along, beyond, across2):\n"
     )
     loop = "    for i in range(branch.size):\n" + indent(inside, 2)
-    return signature + "    base_n, base_t = impulse[0], impulse[1]\n" + indent(before, 1) + loop
+    impulse = "" if scene.friction_dimension == 2 else "    base_n, base_t = impulse[0], impulse[1]\n"
+    return signature + impulse + indent(before, 1) + loop
 
 
-def _planar_lines(names: _Names, axes: Sequence[str]) -> list[str]:
+def _contact_lines(scene: Scene, names: Names, axes: Sequence[str]) -> list[str]:
+    if scene.friction is None:
+        return _frictionless_lines(names, axes)
+    return _planar_lines(names, axes) if scene.friction_dimension == 1 else space_lines(scene, names, axes)
+
+
+def _planar_lines(names: Names, axes: Sequence[str]) -> list[str]:
     differences = ", ".join(names.difference_or_zero(n) for n in ("a", "b", "C", "mu_plus", "mu_minus"))
     lines = [
-        f"dv_t = {_velocity_difference(names, 'H', axes)}",
+        f"dv_t = {velocity_difference(names, 'H', axes)}",
         "code, tau, e_n, e_t = planar_split(",
         f"    hit, a, b, C, edge_plus, edge_minus, mu_plus, mu_minus, {differences},",
         "    v_n, dv_t, base_n, base_t, multiplier, critical_edge)",
@@ -202,13 +167,13 @@ def _planar_lines(names: _Names, axes: Sequence[str]) -> list[str]:
         terms = [f"dv_{j}"]
         moved = [f"d_{y}_{x}*base_{i}" for y, i in (("Yn", "n"), ("Yt", "t")) if names.difference(f"{y}_{x}")]
         if moved:
-            terms.append(f"tau*({_sum(moved)})")
+            terms.append(f"tau*({total(moved)})")
         terms += [f"{y}_{x}*e_{i}" for y, i in (("Yn", "n"), ("Yt", "t")) if not names.is_zero(f"{y}_{x}")]
-        lines.append(f"z_{j} = {_sum(terms)}")
+        lines.append(f"z_{j} = {total(terms)}")
     return lines
 
 
-def _frictionless_lines(names: _Names, axes: Sequence[str]) -> list[str]:
+def _frictionless_lines(names: Names, axes: Sequence[str]) -> list[str]:
     lines = ["code = FRICTIONLESS if hit else FREE", "tau = 0.0", "e_n = -v_n/a if hit else 0.0"]
     for j, x in enumerate(axes):
         lines.append(f"z_{j} = dv_{j}" + ("" if names.is_zero(f"Yn_{x}") else f" + Yn_{x}*e_n"))

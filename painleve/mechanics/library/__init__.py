@@ -13,8 +13,8 @@ from painleve.mechanics.scene_file import read_scene
 __all__ = ["SCENE_NAMES", "load_scene"]
 
 SCENE_NAMES = (
-    "slender_rod", "worn_tip_rod", "two_link_arm", "spatial_rod", "general_rod", "planar_body", "ellipse",
-    "rod_on_obstacle", "general_arm", "minimal", "bead",
+    "slender_rod", "worn_tip_rod", "two_link_arm", "spatial_rod", "spatial_rod_ellipse", "general_rod", "planar_body",
+    "ellipse", "rod_on_obstacle", "general_arm", "minimal", "bead",
 )  # fmt: skip
 
 
