@@ -84,6 +84,12 @@ def test_a_transcendental_zero_is_enclosed_and_a_double_one_without_closed_form_
     assert zero.enclosure.contains(find_zeros(sp.cos(s) - s, s, sp.Integer(0), sp.Integer(1)).zeros[0].enclosure)
 
 
+def test_a_function_too_large_for_a_closed_form_is_searched_all_the_same():
+    (zero,) = find_zeros(s**301 - 2, s, sp.Integer(0), sp.Integer(2)).zeros
+    assert (zero.status, zero.multiplicity) == (Found.ENCLOSED, 1)
+    assert abs(float(zero.enclosure.mid()) - 2 ** (1 / 301)) < 1e-15
+
+
 def test_two_zeros_a_millionth_apart_are_told_apart_and_a_near_miss_is_none():
     near = sp.Rational(1, 10**12)
     pair = find_zeros((s - sp.Rational(1, 3)) ** 2 - near, s, sp.Integer(0), sp.Integer(1)).zeros

@@ -77,13 +77,20 @@ def _polynomial(function: sp.Expr, variable: sp.Symbol) -> tuple[bool, flint.fmp
     numerator = reader.fraction(written)[0]
     for place, relation in reversed(reader.relations):
         if numerator.degrees()[place] > 0:
-            numerator = _checked(numerator.resultant(relation, place))
+            numerator = _eliminated(numerator, relation, place)
     if numerator.is_zero() or any(numerator.degrees()[1:]):
         raise _NotAlgebraic
     coefficients = [0] * (numerator.degrees()[0] + 1)
     for powers, value in numerator.terms():
         coefficients[int(powers[0])] = int(value)
     return angle, flint.fmpz_poly(coefficients)
+
+
+def _eliminated(numerator: flint.fmpz_mpoly, relation: flint.fmpz_mpoly, place: int) -> flint.fmpz_mpoly:
+    degrees, others = numerator.degrees(), relation.degrees()
+    if max(d * others[place] + e * degrees[place] for d, e in zip(degrees, others, strict=True)) > 2 * DEGREE:
+        raise _NotAlgebraic
+    return _checked(numerator.resultant(relation, place))
 
 
 def _checked(polynomial: flint.fmpz_mpoly) -> flint.fmpz_mpoly:
@@ -148,7 +155,7 @@ class _Reader:
         if k > 1:
             root = sp.Pow(e.base, sp.Rational(1, k), evaluate=False)
             above, below = self._unknown(root, lambda r: r**k * below - above), self.one
-        if abs(n) > DEGREE:
+        if abs(n) * max(*above.degrees(), *below.degrees(), 1) > DEGREE:
             raise _NotAlgebraic
         return (above**n, below**n) if n >= 0 else (below**-n, above**-n)
 

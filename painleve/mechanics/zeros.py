@@ -177,6 +177,7 @@ class _Search:
         enclosure = self._sharpened(s)
         place = self._exact_in(enclosure, 1)
         status = Found.ENCLOSED if place is None else Found.EXACT
+        enclosure = enclosure if place is None else ball(place, bits=BITS)
         return Zero(status=status, place=place, enclosure=enclosure, multiplicity=1, rise=rise,
                     reason="the derivative has one sign, and the function another sign at each end")  # fmt: skip
 
