@@ -35,7 +35,9 @@ at most sqrt(3/d) long, X0 = (d/(r - 1))^(1/(r - 1)) grows, and from some h on n
 looks like a power of h on the way there is the map's dependence on d, and starts from 1/(1 + r) at d = 0.
 
 Uniformity is exact in the limit: the number of hops (steps) to the edge is a smooth multiple of 1/h. What is
-neglected: beta/c at the last contact, O(h^r) with the tip kept and O(h^(r/(1+r))) in the strict test.
+neglected: beta/c at the last contact, O(h^r) with the tip kept and O(h^(r/(1+r))) in the strict test. At finite h hops
+last whole numbers of steps, few of them far out, and the phases that arrive from one start bunch as h varies: the
+fraction then scatters about the map's by some hundredths. Over starts and step sizes together it is the map's.
 Source: derived for this project (its notes, section 6, state the laws); eigenvalues after F. Génot and B. Brogliato,
 Eur. J. Mech. A Solids 18 (1999) 653-677.
 """

@@ -24,7 +24,7 @@ from painleve.dynamics.start import Start, as_start
 from painleve.errors import InputError
 from painleve.mechanics.state import State
 
-__all__ = ["Ensemble", "Members", "run_ensemble"]
+__all__ = ["Ensemble", "Members", "run_ensemble", "wilson_interval"]
 
 MOST_MEMBERS = 2**50
 MOST_STEPS = 2**40  # of one member: two weeks
@@ -72,12 +72,7 @@ class Ensemble:
 
     def interval(self, outcome: Outcome) -> tuple[float, float]:
         """Wilson's 95 % confidence interval for the probability of an outcome."""
-        n, z2 = self.count, NORMAL_QUANTILE**2
-        if n == 0:
-            return 0.0, 1.0
-        p = self.fraction(outcome)
-        centre, half = p + z2 / (2 * n), NORMAL_QUANTILE * math.sqrt(p * (1.0 - p) / n + z2 / (4.0 * n * n))
-        return max(0.0, (centre - half) / (1.0 + z2 / n)), min(1.0, (centre + half) / (1.0 + z2 / n))
+        return wilson_interval(self.fraction(outcome), self.count) if self.count else (0.0, 1.0)
 
     def as_dict(self) -> dict[str, object]:
         """Facts for machines: every outcome is listed, those that no member had with the fraction 0."""
@@ -92,6 +87,14 @@ class Ensemble:
             "steps": self.steps,
             "settings": dict(self.settings),
         }
+
+
+def wilson_interval(fraction: float, n: float) -> tuple[float, float]:
+    """Wilson's 95 % confidence interval for a probability, from a fraction of n > 0 independent trials."""
+    z2 = NORMAL_QUANTILE**2
+    centre = fraction + z2 / (2 * n)
+    half = NORMAL_QUANTILE * math.sqrt(fraction * (1.0 - fraction) / n + z2 / (4.0 * n * n))
+    return max(0.0, (centre - half) / (1.0 + z2 / n)), min(1.0, (centre + half) / (1.0 + z2 / n))
 
 
 @dataclass

@@ -1,7 +1,7 @@
 """The Génot-Brogliato point of the slender rod, and starts on slips that run into it.
 
-For m = l = 1 and I = 1/alpha, with t = tan(theta): gamma = 0 at t^2 - mu alpha t + 1 + alpha = 0 (lower edge), the
-normal acceleration of the tip without contact force, beta = omega^2 sin(theta) - gravity, vanishes at the same time,
+With alpha = m l^2/I and t = tan(theta): gamma = 0 at t^2 - mu alpha t + 1 + alpha = 0 (lower edge), the normal
+acceleration of the tip without contact force, beta = l omega^2 sin(theta) - gravity, vanishes at the same time,
 and the eigenvalues of the slip in the time dt/p have the ratio r = 2 t^2/(1 + alpha - t^2) (the project's notes,
 section 6; F. Génot and B. Brogliato, Eur. J. Mech. A Solids 18 (1999) 653-677). K, D, c: see painleve.core.jam_map.
 """
@@ -25,11 +25,16 @@ CLOSE = 0.02  # of the distance: where the amplitude of a slip is read off
 
 @dataclass(frozen=True, kw_only=True)
 class SingularPoint:
-    """Angle (rad), rate omega (rad/s), ratio r of the eigenvalues, D (m/s^2 a radian) and c (m/s^2) at the point."""
+    """Angle (rad), rate omega (rad/s), ratio r of the eigenvalues, D (m/s^2 a radian) and c (m/s^2) at the point.
+
+    mass m (kg) and length l (m, half of the rod's) scale the motion of the tip; the angles and r depend on alpha alone.
+    """
 
     mu: float
     alpha: float
     gravity: float
+    mass: float
+    length: float
     theta: float
     omega: float
     ratio: float
@@ -72,16 +77,21 @@ class SingularPoint:
         if self.ratio > 1.0:
             lift_off = (self.drift / ((self.ratio - 1.0) * amplitude)) ** (1.0 / (self.ratio - 1.0))
         end = max(CLOSE * distance, 1.3 * lift_off)
-        first = math.sqrt((self.gravity + self.acceleration(distance, amplitude)) / math.sin(self.theta - distance))
+        first = self._rate_of(self.theta - distance, self.acceleration(distance, amplitude))
         solution = solve_ivp(self._rate, (distance, end), [first], method="DOP853", rtol=1e-11, atol=0.0)
-        beta = solution.y[0, -1] ** 2 * math.sin(self.theta - end) - self.gravity
+        beta = self.length * solution.y[0, -1] ** 2 * math.sin(self.theta - end) - self.gravity
         return float((-beta - self.drift * end / (1.0 - self.ratio)) / end**self.ratio)
+
+    def _rate_of(self, theta: float, beta: float) -> float:
+        """omega of a slip with this beta."""
+        return math.sqrt((self.gravity + beta) / (self.length * math.sin(theta)))
 
     def _rate(self, x: float, y: np.ndarray) -> list[float]:
         """domega/dx of the slip."""
         s, c, omega = math.sin(self.theta - x), math.cos(self.theta - x), float(y[0])
-        p = 1.0 + self.alpha * c * c - self.mu * self.alpha * s * c
-        return [(omega**2 * s - self.gravity) * self.alpha * (self.mu * s - c) / (p * omega)]
+        p = 1.0 + self.alpha * c * c - self.mu * self.alpha * s * c  # times 1/m
+        beta = self.length * omega**2 * s - self.gravity
+        return [beta * self.alpha * (self.mu * s - c) / (self.length * p * omega)]
 
     def start(self, *, distance: float, amplitude: float, slip: float) -> Start:
         """The rod in contact at the distance (rad) before the point on the slip K = amplitude, slip < 0 (m/s).
@@ -91,25 +101,33 @@ class SingularPoint:
         theta, beta = self.theta - distance, self.acceleration(distance, amplitude)
         if not (-self.gravity < beta < 0.0 < distance < self.theta and slip < 0.0):
             raise InputError(f"start: no slip towards the point at distance {distance:g} with K = {amplitude:g}")
-        omega = math.sqrt((self.gravity + beta) / math.sin(theta))
+        omega, length = self._rate_of(theta, beta), self.length
         return make_start(
             load_scene("slender_rod"),
-            q={"x": 0, "y": math.sin(theta), "theta": theta},
-            u={"x": slip - omega * math.sin(theta), "y": omega * math.cos(theta), "theta": omega},
-            parameters={"mu": self.mu, "gravity": self.gravity, "I": 1.0 / self.alpha},
+            q={"x": 0, "y": length * math.sin(theta), "theta": theta},
+            u={"x": slip - length * omega * math.sin(theta), "y": length * omega * math.cos(theta), "theta": omega},
+            parameters={
+                "mu": self.mu, "gravity": self.gravity, "m": self.mass, "l": length,
+                "I": self.mass * length**2 / self.alpha,
+            },
         )
 
 
-def singular_point(mu: float, *, alpha: float = 3.0, gravity: float = 10.0) -> SingularPoint:
+def singular_point(
+    mu: float, *, alpha: float = 3.0, gravity: float = 10.0, mass: float = 1.0, length: float = 1.0
+) -> SingularPoint:
     """The point on the lower edge of the band of paradoxes. Raises InputError below the critical friction mu_P."""
     discriminant = (mu * alpha) ** 2 - 4.0 * (1.0 + alpha)
+    if not min(mass, length) > 0.0:
+        raise InputError(f"singular point: mass and length must be positive, not {mass:g} and {length:g}")
     if not (alpha > 0.0 and gravity > 0.0 and discriminant > 0.0):
         raise InputError(f"singular point: none for mu = {mu:g}, alpha = {alpha:g}; mu must exceed mu_P")
     t = 2.0 * (1.0 + alpha) / (mu * alpha + math.sqrt(discriminant))
     theta = math.atan(t)
     return SingularPoint(
-        mu=mu, alpha=alpha, gravity=gravity, theta=theta, omega=math.sqrt(gravity / math.sin(theta)),
-        ratio=2.0 * t**2 / (1.0 + alpha - t**2), drift=gravity / t, curvature=gravity,
+        mu=mu, alpha=alpha, gravity=gravity, mass=mass, length=length, theta=theta,
+        omega=math.sqrt(gravity / (length * math.sin(theta))), ratio=2.0 * t**2 / (1.0 + alpha - t**2),
+        drift=gravity / t, curvature=gravity,
     )  # fmt: skip
 
 

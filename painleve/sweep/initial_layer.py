@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import xarray as xr
-from scipy.stats import binomtest
 
 from painleve import sets
 from painleve.asymptotics.limit_set import limit_set
 from painleve.core.ball_maps import uniform_ball, uniforms_needed
 from painleve.core.motion_codes import Ending, FixedStep
 from painleve.core.streams import uniform_block
+from painleve.dynamics.ensemble import wilson_interval
 from painleve.dynamics.start import Start, as_start
 from painleve.errors import InputError
 from painleve.kernels.motion import make_motion
@@ -22,7 +23,7 @@ from painleve.sweep.variables import ball_unit, text, velocity_unit
 
 __all__ = ["sweep_initial_layer"]
 
-STEPS = 50
+FOLLOWED = 1.6  # sqrt(s)
 
 
 def sweep_initial_layer(
@@ -32,9 +33,11 @@ def sweep_initial_layer(
     """Fractions that jump and distances to A over eps/h, by label of the state; (state, step, ratio).
 
     Initial states are uniform in the balls of radius eps = ratio * h about q and u-, as in the paper's A_eps, whether
-    admissible or not; the right velocity of a member is that after 50 steps, and it has jumped if it is nearer to
-    u_tilde than to u-. Strict contact test. A member is a true one, so that e(members, A) is a lower bound for all of
-    the ball and e(A, members) an upper bound. Raises InputError unless A is a pair at every state.
+    admissible or not; the right velocity of a member is that after 1.6 sqrt(h) seconds, and it has jumped if it is
+    nearer to u_tilde than to u-. That time tends to 0 with h, and a member that starts eps above the obstacle can fall
+    onto it, which takes about sqrt(2 eps/|beta|): no fixed number of steps does both. Strict contact test. A member is
+    a true one, so that e(members, A) is a lower bound for all of the ball and e(A, members) an upper bound. Raises
+    InputError unless A is a pair at every state.
     """
     shape = (len(states), len(steps), len(ratios))
     names = ("fraction", "lower", "upper", "excess_from_A", "excess_of_A")
@@ -49,7 +52,7 @@ def sweep_initial_layer(
                 jumps = np.linalg.norm(right - limit.u_plus, axis=1) < np.linalg.norm(right - limit.u_minus, axis=1)
                 both = sets.hausdorff(sets.Cloud(right), limit.shape)
                 values["fraction"][i, j, k] = jumps.mean()
-                values["lower"][i, j, k], values["upper"][i, j, k] = _wilson(int(jumps.sum()), count)
+                values["lower"][i, j, k], values["upper"][i, j, k] = wilson_interval(jumps.mean(), count)
                 values["excess_from_A"][i, j, k] = both.forward.bounds.lower
                 values["excess_of_A"][i, j, k] = both.backward.bounds.upper
                 if progress is not None:
@@ -58,8 +61,8 @@ def sweep_initial_layer(
 
 
 def _right_velocities(start: Start, h: float, eps: float, count: int, seed: int) -> np.ndarray:
-    """(count, d) velocities after STEPS steps."""
-    d, n = len(start.q), STEPS
+    """(count, d) velocities after 1.6 sqrt(h) seconds."""
+    d, n = len(start.q), math.ceil(FOLLOWED / math.sqrt(h))
     needed = uniforms_needed(d, d)
     uniforms, dq, du = np.empty((2 * needed, count)), np.empty((d, count)), np.empty((d, count))
     uniform_block(seed, 0, uniforms)
@@ -79,12 +82,6 @@ def _right_velocities(start: Start, h: float, eps: float, count: int, seed: int)
     return right
 
 
-def _wilson(successes: int, count: int) -> tuple[float, float]:
-    """Wilson's 95 % interval."""
-    interval = binomtest(successes, count).proportion_ci(confidence_level=0.95, method="wilson")
-    return float(interval.low), float(interval.high)
-
-
 def _dataset(
     states: Mapping[str, State], steps: Sequence[float], ratios: Sequence[float], values: dict[str, np.ndarray],
     count: int, seed: int, command: str | None,
@@ -92,7 +89,7 @@ def _dataset(
     scene, dims = next(iter(states.values())).scene, ("state", "step", "ratio")
     unit = velocity_unit(scene)
     sentences = {
-        "fraction": ("fraction of the members that jump within the steps", "1"),
+        "fraction": ("fraction of the members that jump within 1.6 sqrt(h) s", "1"),
         "lower": ("lower end of Wilson's 95 % interval", "1"),
         "upper": ("upper end of Wilson's 95 % interval", "1"),
         "excess_from_A": ("lower bound on how far right velocities are from A", unit),

@@ -54,7 +54,8 @@ def find_approach(state: State, *, until: float) -> Approach:
     """
     scene = state.scene
     p = {s.name: float(state.number(state.parameters[s.name])) for s in scene.parameters}
-    point = singular_point(p["mu"], alpha=p["m"] * p["l"] ** 2 / p["I"], gravity=p["gravity"])
+    alpha = p["m"] * p["l"] ** 2 / p["I"]
+    point = singular_point(p["mu"], alpha=alpha, gravity=p["gravity"], mass=p["m"], length=p["l"])
     whole = simulate(state, scheme="event_driven", step=until, until=until, monitor=False)
     instant = float(whole.t[-1])
     if whole.ending is not Ending.INCONSISTENT or abs(whole.q[-1, 2] - point.theta) > 1e-6:
@@ -66,7 +67,7 @@ def find_approach(state: State, *, until: float) -> Approach:
     for time in times:
         i = int(np.argmin(np.abs(near.t - time)))
         theta, omega = near.q[i, 2], near.u[i, 2]
-        x, beta = point.theta - theta, omega**2 * np.sin(theta) - point.gravity
+        x, beta = point.theta - theta, point.length * omega**2 * np.sin(theta) - point.gravity
         estimates.append((-beta - point.drift * x / (1.0 - point.ratio)) / x**point.ratio)
     spread = abs(estimates[1] - estimates[0])
     return Approach(point=point, instant=instant, amplitude=float(estimates[1]), amplitude_spread=float(spread))
