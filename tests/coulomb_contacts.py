@@ -92,7 +92,7 @@ def slips_by_the_quartic_in_kappa(contact: Numbers) -> np.ndarray:
     return slips[np.lexsort(slips.T)]
 
 
-def slips_by_scanning(contact: Numbers, count: int = 40_000) -> int:
+def slips_by_scanning(contact: Numbers, count: int = 30_000) -> int:
     """How many slips a grid of directions sees: sign changes of d x w where lambda > 0 and friction opposes the
     slip."""
     angle = np.linspace(-np.pi, np.pi, count, endpoint=False) + 1.234e-5
