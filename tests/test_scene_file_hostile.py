@@ -268,12 +268,19 @@ def paths(folder: Path) -> dict[str, str | Path]:
                     "a long name": "x" * 5000 + ".toml", "a lone surrogate": "\udc80.toml"}  # fmt: skip
 
 
+WHY = dict.fromkeys(("folder", "link", "pipe", "socket", "a device"), "not a file") | {
+    "bytes": "line 2: the file is not UTF-8", "nul": "not TOML", "large": "larger than", "loop": "symbolic links",
+    "missing": "No such file", "a long name": "too long",
+}  # fmt: skip
+
+
 def test_what_is_not_a_file_of_text_is_refused_at_once(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name, path in paths(tmp_path).items():
         with pytest.raises(InputError) as caught:
             load_scene(path)
         assert str(caught.value).isprintable(), name
+        assert WHY.get(name, "cannot be read") in str(caught.value), name
         assert len(str(caught.value)) < 500
     with pytest.raises(InputError, match="line 2: the file is not UTF-8"):
         load_scene(tmp_path / "bytes.toml")

@@ -39,6 +39,8 @@ def text_of_file(path: str | FilePath) -> str:
     name = shown_file(path)
     try:
         content = _read(path, name)
+    except InputError:
+        raise
     except (OSError, ValueError) as error:
         why = error.strerror if isinstance(error, OSError) and error.strerror else "there is no such name"
         raise InputError(f"{name}: the scene file cannot be read: {why}") from None
