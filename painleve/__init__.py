@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from painleve.figures import announce
 
 if TYPE_CHECKING:
-    from painleve.asymptotics.certify import CertifyOptions
-    from painleve.asymptotics.coulomb import coulomb_solutions
+    from painleve.asymptotics.certify.method import CertifyOptions
+    from painleve.asymptotics.coulomb.one_step import coulomb_solutions
     from painleve.asymptotics.critical import critical_states
     from painleve.asymptotics.hypotheses import check_hypotheses
     from painleve.asymptotics.limit_set import limit_set
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from painleve.sweep.trajectories import trajectory_dataset
 
 _HOMES = {
-    "CertifyOptions": "painleve.asymptotics.certify",
+    "CertifyOptions": "painleve.asymptotics.certify.method",
     "Coordinate": "painleve.mechanics.scene",
     "Disc": "painleve.mechanics.friction",
     "Ellipse": "painleve.mechanics.friction",
@@ -54,7 +54,7 @@ _HOMES = {
     "check_hypotheses": "painleve.asymptotics.hypotheses",
     "classify": "painleve.asymptotics.theorem",
     "collect": "painleve.asymptotics.theorem",
-    "coulomb_solutions": "painleve.asymptotics.coulomb",
+    "coulomb_solutions": "painleve.asymptotics.coulomb.one_step",
     "critical_states": "painleve.asymptotics.critical",
     "derive": "painleve.mechanics.derive",
     "distance": "painleve.asymptotics.methods",

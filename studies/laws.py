@@ -25,7 +25,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from painleve.asymptotics.coulomb import Enumeration, coulomb_solutions
+from painleve.asymptotics.coulomb.one_step import Enumeration, coulomb_solutions
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import State, make_state

@@ -26,7 +26,7 @@ import numpy as np
 import xarray as xr
 from tqdm import tqdm
 
-from painleve.asymptotics.certify import CertifyOptions
+from painleve.asymptotics.certify.method import CertifyOptions
 from painleve.asymptotics.optimise import OptimiseOptions
 from painleve.asymptotics.sample import SampleOptions
 from painleve.mechanics.library import load_scene

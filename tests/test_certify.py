@@ -12,11 +12,11 @@ import sympy as sp
 from planar_scenes import SCENE_NAMES
 from scipy.optimize import minimize
 
-from painleve.asymptotics.certify import CertifyOptions, certify_distance
-from painleve.asymptotics.isolation import slips_nowhere
+from painleve.asymptotics.certify.isolation import slips_nowhere
+from painleve.asymptotics.certify.method import CertifyOptions, certify_distance
+from painleve.asymptotics.certify.pieces import contact_pieces
 from painleve.asymptotics.limit_set import limit_set
 from painleve.asymptotics.local import make_local_problem
-from painleve.asymptotics.pieces import contact_pieces
 from painleve.asymptotics.sample import SampleOptions, sample_distance
 from painleve.errors import InputError
 from painleve.mechanics.library import load_scene

@@ -16,7 +16,7 @@ from coulomb_contacts import (
 )
 
 import painleve
-from painleve.asymptotics.coulomb import CoulombSolutions, Enumeration, coulomb_solutions
+from painleve.asymptotics.coulomb.one_step import CoulombSolutions, Enumeration, coulomb_solutions
 from painleve.core.codes import Branch
 from painleve.core.conic_law import disc_impulse
 from painleve.core.coulomb import COLUMNS, MOST_SOLUTIONS, coulomb_disc

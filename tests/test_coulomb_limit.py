@@ -10,8 +10,8 @@ import pytest
 import sympy as sp
 from coulomb_contacts import Numbers, random_numbers, scene_with
 
-from painleve.asymptotics.coulomb import coulomb_solutions
-from painleve.asymptotics.coulomb_limit import CoulombLimitSet, coulomb_limit_set
+from painleve.asymptotics.coulomb.limit import CoulombLimitSet, coulomb_limit_set
+from painleve.asymptotics.coulomb.one_step import coulomb_solutions
 from painleve.asymptotics.limit_set import limit_set
 from painleve.core.codes import Branch
 from painleve.errors import InputError

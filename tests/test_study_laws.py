@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
 import xarray as xr
+from study_runs import load_study
 
 from painleve.asymptotics.limit_set import limit_set
 from painleve.errors import InputError
@@ -20,20 +19,10 @@ from painleve.sweep import StudyResult
 from painleve.sweep.laws import map_laws
 
 
-def load_study() -> ModuleType:
-    path = Path(__file__).parents[1] / "studies" / "laws.py"
-    spec = importlib.util.spec_from_file_location("study_laws", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path]:
     folder = tmp_path_factory.mktemp("laws")
-    return load_study().run(folder, quick=True), folder
+    return load_study("laws").run(folder, quick=True), folder
 
 
 @pytest.fixture(scope="module")

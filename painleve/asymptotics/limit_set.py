@@ -10,7 +10,7 @@ import numpy as np
 import sympy as sp
 
 from painleve import sets
-from painleve.asymptotics.coulomb_limit import CoulombLimitSet, coulomb_limit_set
+from painleve.asymptotics.coulomb.limit import CoulombLimitSet, coulomb_limit_set
 from painleve.asymptotics.least_energy import least_edge, least_energy
 from painleve.errors import InputError
 from painleve.mechanics.derive import derive
@@ -89,7 +89,7 @@ def limit_set(state: State, law: str = "projection") -> LimitSet | CoulombLimitS
     """The right velocities at a tangential contact, from exact signs; kind "undecided" where a sign is not decided.
 
     Of the law "projection", S of the paper's (7): A(q, u-). Of the law "coulomb", Coulomb's law with maximal
-    dissipation: the same for k <= 1 and in general another set for k = 2 (painleve.asymptotics.coulomb_limit). Raises
+    dissipation: the same for k <= 1 and in general another set for k = 2 (painleve.asymptotics.coulomb.limit). Raises
     InputError for another law.
     """
     if law == "coulomb":

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from painleve.asymptotics.certify import CertifyOptions, certify_distance
+from painleve.asymptotics.certify.method import CertifyOptions, certify_distance
 from painleve.asymptotics.distance import Distance
 from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.optimise import OptimiseOptions, optimise_distance

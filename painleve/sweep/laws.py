@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from painleve.asymptotics.contact_problem import problem_at
+from painleve.asymptotics.coulomb.problem import problem_at
 from painleve.core.two_laws import compare_laws
 from painleve.errors import InputError
 from painleve.mechanics.derive import derive

@@ -23,7 +23,7 @@ from itertools import combinations, pairwise, product
 
 import numpy as np
 
-from painleve.asymptotics.pieces import Piece
+from painleve.asymptotics.certify.pieces import Piece
 
 __all__ = ["Candidate", "Search"]
 

@@ -36,8 +36,8 @@ import numpy as np
 import sympy as sp
 
 from painleve import sets
-from painleve.asymptotics.contact_problem import ContactProblem, problem_at, recognised
-from painleve.asymptotics.coulomb_impulses import Impulse, Kind, find_impulses
+from painleve.asymptotics.coulomb.impulses import Impulse, Kind, find_impulses
+from painleve.asymptotics.coulomb.problem import ContactProblem, problem_at, recognised
 from painleve.mechanics.signs import Sign, Signed, exact_sign
 from painleve.mechanics.state import State
 

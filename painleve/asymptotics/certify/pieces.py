@@ -20,10 +20,10 @@ from typing import Literal
 import flint
 import numpy as np
 
-from painleve.asymptotics.cover import Cover
+from painleve.asymptotics.certify.cover import Cover
+from painleve.asymptotics.certify.taylor_models import Models, TaylorModel, expand, make_models, taylor_order
 from painleve.asymptotics.local import BITS, LocalProblem
 from painleve.asymptotics.member import base_balls, jump_balls
-from painleve.asymptotics.taylor_models import Models, TaylorModel, expand, make_models, taylor_order
 from painleve.core.codes import Branch
 from painleve.errors import InputError
 from painleve.mechanics.friction import Segment

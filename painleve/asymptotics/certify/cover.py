@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from painleve.asymptotics.taylor_models import TaylorModel, make_models
+from painleve.asymptotics.certify.taylor_models import TaylorModel, make_models
 
 __all__ = ["Cover"]
 

@@ -1,14 +1,13 @@
 """Rigorous enclosures of e(A_eps, A), e(A, A_eps) and d_H, for scenes with k <= 1 and one or two shape coordinates.
 
 e(A_eps, A) is the larger of eps, its value over the free members, and the suprema over the pieces of members in contact
-(painleve.asymptotics.pieces), each bounded from above by branch and bound (painleve.asymptotics.branch_and_bound). The
-free members are the closed ball B(u-, eps): a direction orthogonal to A attains eps, and no point of the ball is
-farther from u-. The lower bounds are members evaluated in ball arithmetic.
+(`pieces` in this room), each bounded from above by branch and bound (`branch_and_bound`). The free members are the
+closed ball B(u-, eps): a direction orthogonal to A attains eps, and no point of the ball is farther from u-. The lower bounds are members evaluated in ball arithmetic.
 
 e(A, A_eps) = 0 exactly where A_eps shadows A for every eps: S(q, u-) = u- is a member; u_tilde is the limit of the
 members over q_eps = q with v_n -> 0- (sticking); and where every ball holds q_eps in contact with gamma > 0, the
 witnesses of Theorem 1 over such q_eps tend to every point of A as the ball shrinks, and the members of a smaller ball
-are members of this one. At an isolated state see painleve.asymptotics.isolation.
+are members of this one. At an isolated state see `isolation`.
 """
 
 from __future__ import annotations
@@ -18,14 +17,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from painleve.asymptotics.branch_and_bound import Candidate, Search
+from painleve.asymptotics.certify.branch_and_bound import Candidate, Search
+from painleve.asymptotics.certify.isolation import members_apart, slips_nowhere
+from painleve.asymptotics.certify.pieces import contact_pieces
+from painleve.asymptotics.certify.preimage import candidate_member, free_member
 from painleve.asymptotics.distance import Attained, Distance
-from painleve.asymptotics.isolation import members_apart, slips_nowhere
 from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.local import LocalProblem, make_local_problem
 from painleve.asymptotics.member import Member
-from painleve.asymptotics.pieces import contact_pieces
-from painleve.asymptotics.preimage import candidate_member, free_member
 from painleve.asymptotics.sample import check_eps
 from painleve.asymptotics.witness import find_family
 from painleve.core.codes import Branch

@@ -18,11 +18,11 @@ from math import prod
 import flint
 import numpy as np
 
-from painleve.asymptotics.branch_and_bound import Search
+from painleve.asymptotics.certify.branch_and_bound import Search
+from painleve.asymptotics.certify.pieces import stick_piece
+from painleve.asymptotics.certify.preimage import candidate_member
 from painleve.asymptotics.local import BITS, LocalProblem
 from painleve.asymptotics.member import Member, base_balls, make_member
-from painleve.asymptotics.pieces import stick_piece
-from painleve.asymptotics.preimage import candidate_member
 from painleve.asymptotics.witness import find_witness
 from painleve.mechanics.jets import Jet, jets
 from painleve.mechanics.neighbourhood import smooth_indicator

@@ -10,8 +10,8 @@ import numpy as np
 import sympy as sp
 from flint import arb, ctx
 
-from painleve.asymptotics.contact_problem import ContactProblem, Numbers, make_problem, recognised
-from painleve.asymptotics.coulomb_impulses import BITS, Exact, Impulse, Kind, find_impulses
+from painleve.asymptotics.coulomb.impulses import BITS, Exact, Impulse, Kind, find_impulses
+from painleve.asymptotics.coulomb.problem import ContactProblem, Numbers, make_problem, recognised
 from painleve.mechanics.balls import ball
 from painleve.mechanics.scene import Scene
 from painleve.mechanics.signs import Sign, Signed

@@ -21,8 +21,8 @@ from typing import Literal, TypeAlias
 import sympy as sp
 from flint import arb, ctx
 
-from painleve.asymptotics.contact_problem import ContactProblem, recognised
-from painleve.asymptotics.slip_roots import Undecided, find_slips
+from painleve.asymptotics.coulomb.problem import ContactProblem, recognised
+from painleve.asymptotics.coulomb.slip_roots import Undecided, find_slips
 from painleve.mechanics.balls import ball
 from painleve.mechanics.signs import Sign, exact_sign
 

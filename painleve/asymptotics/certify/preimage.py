@@ -5,7 +5,7 @@ from __future__ import annotations
 import flint
 import numpy as np
 
-from painleve.asymptotics.branch_and_bound import Candidate
+from painleve.asymptotics.certify.branch_and_bound import Candidate
 from painleve.asymptotics.local import BITS, LocalProblem
 from painleve.asymptotics.member import Member, base_balls, make_member, row_balls
 from painleve.core.codes import Branch
