@@ -2,7 +2,8 @@
 
 e(A_eps, A) is the larger of eps, its value over the free members, and the suprema over the pieces of members in contact
 (`pieces` in this room), each bounded from above by branch and bound (`branch_and_bound`). The free members are the
-closed ball B(u-, eps): a direction orthogonal to A attains eps, and no point of the ball is farther from u-. The lower bounds are members evaluated in ball arithmetic.
+closed ball B(u-, eps): a direction orthogonal to A attains eps, and no point of the ball is farther from u-. The lower
+bounds are members evaluated in ball arithmetic.
 
 e(A, A_eps) = 0 exactly where A_eps shadows A for every eps: S(q, u-) = u- is a member; u_tilde is the limit of the
 members over q_eps = q with v_n -> 0- (sticking); and where every ball holds q_eps in contact with gamma > 0, the
