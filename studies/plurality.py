@@ -11,8 +11,9 @@ Génot-Brogliato point. A step size either jams there (a jump of the velocity wi
 3. At finite h the fraction, over step sizes and starts, is that of a local map with one number
    d ~ h^((1-r)/(1+r)). Over the step sizes of one start alone it scatters about that by some hundredths.
 4. At states with gamma < 0, known to eps, the fraction that jumps within 1.6 sqrt(h) s is a function of eps/h as
-   h -> 0. Where the free normal acceleration is negative (inconsistent) everything jumps up to eps/h = 10/s; where it
-   is positive (indeterminate) nothing does up to 3/s; for larger eps/h both ends of A are approached. Measured.
+   h -> 0. Where the free normal acceleration beta is negative (inconsistent) everything jumps that comes to the floor,
+   all of it in that time up to eps/h = 1.6^2 |beta|/2 = 12.5/s; where beta is positive (indeterminate) nothing jumps
+   up to eps/h = 3/s; for larger eps/h both ends of A are approached. Measured.
 5. Which limit other schemes and the compliant contact choose there. Measured.
 
 Command:  painleve study plurality [--quick]

@@ -221,6 +221,13 @@ def test_jumps_tend_to_the_exact_instant(finished: tuple[StudyResult, Path]) -> 
         assert delays[0] < 0.1 * delays[-1]
 
 
+def test_measured_fractions_differ_from_the_map_by_no_more_than_chance(finished: tuple[StudyResult, Path]) -> None:
+    for contact in ("strict", "kept"):
+        fit = finished[0].data["fits"][contact]
+        assert fit["degrees"] >= 9
+        assert fit["p_value"] > 1e-3
+
+
 def test_where_the_map_has_no_jam_none_is_seen(finished: tuple[StudyResult, Path]) -> None:
     for contact in ("strict", "kept"):
         assert finished[0].data["fits"][contact]["jams_where_the_map_has_none"] == 0

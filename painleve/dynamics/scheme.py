@@ -49,6 +49,9 @@ class Scheme:
         return {**self.options, **(given or {})}
 
 
+LEAST_RTOL = 1e-13  # below, scipy's integrators take their own
+
+
 @dataclass(frozen=True, kw_only=True)
 class Stepped(Scheme):
     """A compiled scheme of the one time loop; `lag(theta)`: see Trajectory.lag."""
@@ -76,6 +79,16 @@ class Integrated(Scheme):
 
     integrate: Callable[[Start, Grid, Mapping[str, float], Progress], Trajectory]
     tests_contact: bool = False
+
+    def settings(self, tolerance: float, given: Mapping[str, float] | None) -> dict[str, float]:
+        """The options with defaults. Raises InputError as Scheme.settings, and for numbers that are not positive."""
+        options = super().settings(tolerance, given)
+        for name, value in options.items():
+            if not 0.0 < value < float("inf"):
+                raise InputError(f"scheme {self.name}: {name} = {value} must be a positive number")
+        if options["rtol"] < LEAST_RTOL:
+            raise InputError(f"scheme {self.name}: rtol = {options['rtol']} is below what doubles hold; take 1e-13")
+        return options
 
     def run(
         self, start: Start, grid: Grid, tolerance: float, options: Mapping[str, float], progress: Progress

@@ -34,8 +34,9 @@ def sweep_initial_layer(
 
     Initial states are uniform in the balls of radius eps = ratio * h about q and u-, as in the paper's A_eps, whether
     admissible or not; the right velocity of a member is that after 1.6 sqrt(h) seconds, and it has jumped if it is
-    nearer to u_tilde than to u-. That time tends to 0 with h, and a member that starts eps above the obstacle can fall
-    onto it, which takes about sqrt(2 eps/|beta|): no fixed number of steps does both. Strict contact test. A member is
+    nearer to u_tilde than to u-. That time tends to 0 with h as slowly as a member falls onto the obstacle from eps
+    above it, in sqrt(2 eps/|beta|) at a free normal acceleration beta < 0: a member has the time to for
+    eps/h < 1.6^2 |beta|/2, whatever h. In a fixed number of steps it would not. Strict contact test. A member is
     a true one, so that e(members, A) is a lower bound for all of the ball and e(A, members) an upper bound. Raises
     InputError unless A is a pair at every state.
     """

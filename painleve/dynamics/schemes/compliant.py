@@ -24,7 +24,6 @@ from painleve.dynamics.recorder import Recorder
 from painleve.dynamics.scheme import Integrated, Progress
 from painleve.dynamics.start import Start
 from painleve.dynamics.trajectory import Trajectory
-from painleve.errors import InputError
 
 NAME = "compliant"
 MOST_ARCS = 100_000
@@ -112,9 +111,6 @@ class _Run:
 
 def integrate(start: Start, grid: Grid, options: Mapping[str, float], progress: Progress) -> Trajectory:
     """The trajectory on the grid's instants."""
-    for name, value in options.items():
-        if not (math.isfinite(value) and value > 0.0):
-            raise InputError(f"scheme {NAME}: {name} = {value} must be a positive number")
     return _Run(start, grid, options, progress).go()
 
 
