@@ -19,7 +19,7 @@ from painleve.core.motion_codes import Ending, Outcome
 from painleve.core.streams import uniform_block
 from painleve.dynamics.grid import check_step, check_until
 from painleve.dynamics.scheme import Stepped
-from painleve.dynamics.schemes import load_scheme
+from painleve.dynamics.schemes import scheme_for
 from painleve.dynamics.start import Start, as_start
 from painleve.errors import InputError
 from painleve.mechanics.state import State
@@ -192,12 +192,13 @@ def run_ensemble(
     `progress` is called with the number of members done since the last call. Ctrl-C ends it with what there is.
     Raises InputError for bad input.
     """
-    method = load_scheme(scheme)
+    beginning = as_start(start)
+    method = scheme_for(beginning.scene, scheme)
     if not isinstance(method, Stepped):
         raise InputError(f"scheme: ensembles need a fixed-step scheme, and {scheme} is not one")
     settings = method.settings(contact_tolerance, options)
     task = _Task(
-        start=as_start(start), method=method, theta=method.theta(settings), tolerance=contact_tolerance,
+        start=beginning, method=method, theta=method.theta(settings), tolerance=contact_tolerance,
         step=check_step(step), until=check_until(until), count=_checked_count(count), seed=_checked_seed(seed),
         spread=spread, window=window, ball=ball,
     )  # fmt: skip

@@ -25,8 +25,8 @@ def run_fixed_step(
 
     `progress` hears of the time covered after each chunk; the steps do not depend on how they are cut into chunks.
     """
-    n, d = len(grid.h), start.scene.dimension
-    q, u, r = np.zeros((n + 1, d)), np.zeros((n + 1, d)), np.zeros((n + 1, 2))
+    n, d, k = len(grid.h), start.scene.dimension, start.scene.friction_dimension
+    q, u, r = np.zeros((n + 1, d)), np.zeros((n + 1, d)), np.zeros((n + 1, 1 + max(1, k)))
     branch, change, several = (np.zeros(n + 1, np.int8) for _ in range(3))
     q[0], u[0] = start.q, start.u
     done, since, ending = 0, 0, Ending.REACHED_END
@@ -43,9 +43,11 @@ def run_fixed_step(
     except KeyboardInterrupt:
         ending = Ending.INTERRUPTED
     kept = slice(0, done + 1)
-    counts = {b.label: int((branch[1 : done + 1] == b).sum()) for b in Branch}
+    statistics = {b.label: int((branch[1 : done + 1] == b).sum()) for b in Branch}
+    if k < 2:  # in space other solutions of Coulomb's law are not counted
+        statistics["steps_with_several_solutions"] = int((several[kept] > 1).sum())
     return Trajectory(
         scheme=name, start=start, settings={"contact_tolerance": tolerance, "theta": theta}, t=grid.t[kept],
         q=q[kept], u=u[kept], r=r[kept], branch=branch[kept], change=change[kept], lag=lag, ending=ending,
-        statistics={**counts, "steps_with_several_solutions": int((several[kept] > 1).sum())},
+        statistics=statistics,
     )  # fmt: skip

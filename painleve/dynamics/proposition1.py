@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from painleve.dynamics.contact_rows import directions, nearest_impulse
 from painleve.dynamics.start import Start
 
 __all__ = ["Proposition1", "check_proposition1"]
@@ -24,7 +25,7 @@ class Proposition1:
 
     With s = |u_{i+1}| + |u_i| + h |M^-1 f| in the kinetic norm at q_{i+1}:
     membership: distance of r from R(q_{i+1}) in the norm of M^-1, over s (an upper bound on it: of the part of r that
-    W does not span, and of the violations of 0 <= r_n and -mu_minus r_n <= r_t <= mu_plus r_n);
+    W does not span, and of the violations of 0 <= r_n and of r_t in r_n B, B the friction section);
     dissipation: <u_{i+1}, r>/s^2; norm_bound: (|u_{i+1}| - |u_i| - h |M^-1/2| |f|)/s.
     """
 
@@ -95,13 +96,8 @@ def _distance_from_cone(
     start: Start, rows: np.ndarray, inverse: np.ndarray, r: np.ndarray, touching: np.ndarray
 ) -> np.ndarray:
     """An upper bound on the distance of r from R(q) in the norm of M^-1."""
-    d, planar = start.scene.dimension, start.motion.planar
-    columns = [rows[:, 1 : 1 + d]] + ([rows[:, 3 + 2 * d : 3 + 3 * d]] if planar else [])
-    W = np.stack(columns, axis=2)
+    W = np.stack(directions(start.motion, rows), axis=2)
     response = inverse @ W
     parts = np.linalg.solve(np.swapaxes(W, 1, 2) @ response, np.einsum("nik,ni->nk", response, r)[..., None])[..., 0]
-    nearest = np.maximum(parts, 0.0) * touching[:, None]
-    if planar:
-        plus, minus = rows[:, 6 + 4 * d], rows[:, 7 + 4 * d]
-        nearest[:, 1] = np.clip(parts[:, 1], -minus * nearest[:, 0], plus * nearest[:, 0])
+    nearest = nearest_impulse(start.motion, rows, parts) * touching[:, None]
     return _norm(inverse, r - np.einsum("nik,nk->ni", W, nearest))

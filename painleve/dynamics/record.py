@@ -10,12 +10,15 @@ import xarray as xr
 
 from painleve.core.codes import Branch
 from painleve.core.motion_codes import Change
+from painleve.dynamics.contact_rows import tangential_names
 from painleve.mechanics.scene import Scene
 
 if TYPE_CHECKING:
     from painleve.dynamics.trajectory import Trajectory
 
 __all__ = ["record"]
+
+TANGENTIAL = {"t": "tangential", "t1": "first tangential", "t2": "second tangential"}
 
 
 def record(trajectory: Trajectory) -> xr.Dataset:
@@ -64,18 +67,19 @@ def _motion(trajectory: Trajectory) -> dict[str, xr.Variable]:
 
 def _contact(trajectory: Trajectory) -> dict[str, xr.Variable]:
     length, speed, impulse = ("m", "m/s", "N s") if trajectory.start.scene.outline else ("SI", "SI", "SI")
+    tangential = {side: TANGENTIAL[side] for side in tangential_names(trajectory.start.motion)}
     sentences = {
         "g": ("constraint g(q), admissible where it is not positive", length),
         "gamma": ("gamma, the least normal compliance: the law is discontinuous where it is negative", "SI"),
         "v_n": ("normal velocity of the contact point, positive away from the obstacle", speed),
-        "v_t": ("tangential velocity of the contact point", speed),
+        **{f"v_{side}": (f"{words} velocity of the contact point", speed) for side, words in tangential.items()},
         "kinetic_energy": ("kinetic energy of the scene", "J"),
     }
     values = trajectory.contact_quantities()
     variables = {name: _number(values[name], *meaning) for name, meaning in sentences.items()}
-    for j, side in enumerate(("normal", "tangential")):
-        sentence = f"{side} contact impulse of the step that ends here"
-        variables[f"r_{side[0]}"] = _number(trajectory.r[:, j], sentence, impulse)
+    for j, (side, words) in enumerate({"n": "normal", **tangential}.items()):
+        sentence = f"{words} contact impulse of the step that ends here"
+        variables[f"r_{side}"] = _number(trajectory.r[:, j], sentence, impulse)
     variables["contact_work"] = _number(trajectory.contact_work(), "work of the contact impulses since the start", "J")
     variables["branch"] = _code(trajectory.branch, "branch of the contact law in the step that ends here", Branch)
     variables["change"] = _code(trajectory.change, "change of the velocity at the contact in that step", Change)

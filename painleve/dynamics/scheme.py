@@ -22,6 +22,8 @@ class Scheme:
     """A method: `order` is that of its velocity where the motion is smooth; `options` are numbers with their defaults.
 
     `tests_contact`: whether contact is found by testing g(q) >= -tolerance; other methods impose g(q) <= 0 itself.
+    `friction_dimension`: the largest that it steps, 1 in the plane and 2 in space. The schemes of Moreau's law take the
+    projection (7) there; others would have to solve Coulomb's law, which differs from it in space.
     """
 
     name: str
@@ -29,6 +31,7 @@ class Scheme:
     source: str
     order: int
     tests_contact: bool = True
+    friction_dimension: int = 1
     options: Mapping[str, float] = field(default_factory=dict)
 
     def run(

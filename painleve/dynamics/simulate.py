@@ -10,7 +10,7 @@ import numpy as np
 from painleve.core.motion_codes import Ending
 from painleve.dynamics.grid import make_grid
 from painleve.dynamics.proposition1 import check_proposition1
-from painleve.dynamics.schemes import load_scheme
+from painleve.dynamics.schemes import scheme_for
 from painleve.dynamics.start import Start, as_start
 from painleve.dynamics.trajectory import Trajectory
 from painleve.mechanics.state import State
@@ -36,7 +36,8 @@ def simulate(
     call. A method that cannot go on ends with a value that says why, and Ctrl-C ends it with what there is. Raises
     InputError for bad input.
     """
-    method, beginning = load_scheme(scheme), as_start(start)
+    beginning = as_start(start)
+    method = scheme_for(beginning.scene, scheme)
     settings = method.settings(contact_tolerance, options)
     grid = make_grid(beginning.t, step, until)
     result = method.run(beginning, grid, contact_tolerance, settings, progress or _ignore)

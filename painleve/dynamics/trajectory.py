@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from painleve.core.motion_codes import Change, Ending
+from painleve.dynamics.contact_rows import directions, gamma_along, responses, tangential_names
 from painleve.dynamics.proposition1 import Proposition1
 from painleve.dynamics.record import record
 from painleve.dynamics.start import Start
@@ -40,9 +41,11 @@ class Jump:
 class Trajectory:
     """Instants t (n,), coordinates q and velocities u (n, d), and what the contact did up to each instant.
 
-    Row i of the impulses r (n, 2), (r_n, r_t), of `branch` and of `change` belongs to the step that ends at t[i]; row 0
-    is the start and holds zeros. `lag`: the law is taken at q[i] - lag (t[i] - t[i-1]) u[i]. `ending` says how the
-    trajectory ended, `detail` what is particular to this one; `proposition1` holds margins where they were asked for.
+    Row i of the impulses r (n, 1 + k), (r_n, r_t) or in space (r_n, r_t1, r_t2), of `branch` and of `change` belongs to
+    the step that ends at t[i]; row 0 is the start and holds zeros. r multiplies -grad g and the scene's own tangents H,
+    so that the momentum changes by W r (without friction r_t = 0). `lag`: the law is taken at
+    q[i] - lag (t[i] - t[i-1]) u[i]. `ending` says how the trajectory ended, `detail` what is particular to this one;
+    `proposition1` holds margins where they were asked for.
     """
 
     scheme: str
@@ -73,32 +76,28 @@ class Trajectory:
     def jumps(self) -> tuple[Jump, ...]:
         """Every jump of the velocity, in order."""
         motion, p = self.start.motion, self.start.p
-        d, planar = self.start.scene.dimension, motion.planar
         found = []
         for i in np.flatnonzero(self.change):
             at = self.q[i] - self.lag * (self.t[i] - self.t[i - 1]) * self.u[i]
-            rows = motion.rows_at(tuple(at), p)
-            response = self.r[i, 0] * np.array(rows[1 + d : 1 + 2 * d])
-            if planar:
-                response += self.r[i, 1] * np.array(rows[3 + 3 * d : 3 + 4 * d])
+            rows = np.array([motion.rows_at(tuple(at), p)])
+            response = _combined(self.r[i : i + 1], responses(motion, rows))[0]
             found.append(Jump(
-                index=int(i), time=float(self.t[i]), kind=Change(self.change[i]), gamma=gamma_of(rows, d, planar),
-                u_minus=self.u[i] - response, u_plus=self.u[i].copy(),
+                index=int(i), time=float(self.t[i]), kind=Change(self.change[i]),
+                gamma=float(gamma_along(motion, rows)[0]), u_minus=self.u[i] - response, u_plus=self.u[i].copy(),
             ))  # fmt: skip
         return tuple(found)
 
     def contact_quantities(self) -> dict[str, np.ndarray]:
-        """g, gamma, v_n, v_t and the kinetic energy at every instant."""
-        d, planar = self.start.scene.dimension, self.start.motion.planar
+        """g, gamma, v_n, v_t (in space v_t1 and v_t2; 0 without friction) and the kinetic energy at every instant."""
+        motion = self.start.motion
         rows, M, _ = self.start.tabulate(self.t, self.q, self.u)
-        normal = rows[:, 1 : 1 + d]
-        edge = np.minimum(rows[:, 2 + 2 * d], rows[:, 5 + 4 * d]) if planar else rows[:, 1 + 2 * d]
-        tangent = rows[:, 3 + 2 * d : 3 + 3 * d] if planar else np.zeros_like(normal)
+        velocities = [(column * self.u).sum(axis=1) for column in directions(motion, rows)]
+        tangential = velocities[1:] or [np.zeros(len(self.t))]
         return {
             "g": rows[:, 0],
-            "gamma": edge / (normal**2).sum(axis=1),
-            "v_n": (normal * self.u).sum(axis=1),
-            "v_t": (tangent * self.u).sum(axis=1),
+            "gamma": gamma_along(motion, rows),
+            "v_n": velocities[0],
+            **{f"v_{side}": v for side, v in zip(tangential_names(motion), tangential, strict=True)},
             "kinetic_energy": np.einsum("ni,nij,nj->n", self.u, M, self.u) / 2.0,
         }
 
@@ -108,13 +107,9 @@ class Trajectory:
         Of a jump it is the change of the kinetic energy; of a force that lasts over a recorded step it is an estimate
         of first order in that step. It is negative where the contact takes energy.
         """
-        d, h = self.start.scene.dimension, np.diff(self.t, prepend=self.t[:1])
+        motion, h = self.start.motion, np.diff(self.t, prepend=self.t[:1])
         rows, _, _ = self.start.tabulate(self.t, self.q - self.lag * h[:, None] * self.u, self.u)
-        r_n, r_t = self.r[:, :1], self.r[:, 1:]
-        impulse, response = r_n * rows[:, 1 : 1 + d], r_n * rows[:, 1 + d : 1 + 2 * d]
-        if self.start.motion.planar:
-            impulse += r_t * rows[:, 3 + 2 * d : 3 + 3 * d]
-            response += r_t * rows[:, 3 + 3 * d : 3 + 4 * d]
+        impulse, response = (_combined(self.r, columns(motion, rows)) for columns in (directions, responses))
         return np.cumsum((impulse * (self.u - response / 2.0)).sum(axis=1))
 
     def as_dict(self) -> dict[str, object]:
@@ -142,7 +137,9 @@ class Trajectory:
         return figure_of(self)
 
 
-def gamma_of(rows: tuple[float, ...], d: int, planar: bool) -> float:
-    """gamma from the rows at a configuration (the project's notes, section 1)."""
-    edge = min(rows[2 + 2 * d], rows[5 + 4 * d]) if planar else rows[1 + 2 * d]
-    return float(edge / sum(w * w for w in rows[1 : 1 + d]))
+def _combined(r: np.ndarray, columns: list[np.ndarray]) -> np.ndarray:
+    """The sum of r[:, k] columns[k] (n, d); without friction r has a column of zeros more."""
+    total = r[:, :1] * columns[0]
+    for k, column in enumerate(columns[1:], 1):
+        total += r[:, k : k + 1] * column
+    return total

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from painleve.errors import InputError
 from painleve.kernels.files import load_generated
+from painleve.kernels.motion_rows import motion_rows
 from painleve.kernels.motion_source import motion_source
-from painleve.kernels.rows import Rows, rows_of
+from painleve.kernels.rows import Rows
 from painleve.mechanics.derive import Derivation, derive
 from painleve.mechanics.scene import Scene
 
@@ -29,7 +29,7 @@ class Motion:
     rows_at: Callable[..., tuple[float, ...]]
     inertia_at: Callable[..., tuple[float, ...]]
     force_at: Callable[..., tuple[float, ...]]
-    drift_at: Callable[..., tuple[float, float]]
+    drift_at: Callable[..., tuple[float, ...]]
     step: Callable[..., tuple]
     run: Callable[..., tuple[int, int, int]]
     run_members: Callable[..., None]
@@ -42,19 +42,14 @@ class Motion:
     @property
     def planar(self) -> bool:
         """Whether the contact has friction, in the plane."""
-        return self.scene.friction is not None
+        return self.scene.friction_dimension == 1
 
 
 @lru_cache(maxsize=64)
 def make_motion(scene: Scene) -> Motion:
-    """Generate and load a scene's motion; compiled at first call, from the disk cache in later processes.
-
-    Raises InputError for friction in space, which the schemes do not step.
-    """
-    if scene.friction_dimension > 1:
-        raise InputError(f"scene {scene.name}: the schemes step frictionless and planar contact, not friction in space")
+    """Generate and load a scene's motion; compiled at first call, from the disk cache in later processes."""
     derivation = derive(scene)
-    rows = rows_of(derivation)
+    rows = motion_rows(derivation)
     module, digest, path = load_generated(f"motion_{scene.name}", motion_source(scene, rows))
     return Motion(
         derivation=derivation, rows=rows, digest=digest, path=path, motion_at=module.motion_at,

@@ -35,12 +35,14 @@ class Curve:
     style: str = "-"
 
 
-# Panels from the top, with the label of their axis.
+# Panels from the top, with the label of their axis; a curve is drawn if the dataset has it.
 CURVES = (
     ("$\\gamma$", (Curve(name="gamma", label="$\\gamma$", colour=PALETTE["purple"]),)),
     ("velocity", (
         Curve(name="v_n", label="contact point, normal $v_n$", colour=PALETTE["blue"]),
         Curve(name="v_t", label="contact point, tangential $v_t$", colour=PALETTE["orange"], style="--"),
+        Curve(name="v_t1", label="contact point, tangential $v_{t1}$", colour=PALETTE["orange"], style="--"),
+        Curve(name="v_t2", label="contact point, tangential $v_{t2}$", colour=PALETTE["green"], style="-."),
     )),
     ("energy", (
         Curve(name="kinetic_energy", label="kinetic energy", colour=PALETTE["green"]),
@@ -113,7 +115,7 @@ def _draw_bodies(axis: Axes, dataset: xr.Dataset) -> None:
 
 def _draw_panel(axis: Axes, dataset: xr.Dataset, label: str, curves: tuple[Curve, ...]) -> None:
     axis.axhline(0.0, color=GREY, linewidth=0.5, zorder=0)
-    for curve in curves:
+    for curve in (c for c in curves if c.name in dataset):
         axis.plot(dataset["time"], dataset[curve.name], color=curve.colour, linestyle=curve.style, label=curve.label)
     kinds = labels_of(dataset["change"])
     for kind, (name, colour, style) in JUMPS.items():

@@ -6,8 +6,9 @@ from importlib import import_module
 
 from painleve.dynamics.scheme import Scheme
 from painleve.errors import InputError
+from painleve.mechanics.scene import Scene
 
-__all__ = ["SCHEME_NAMES", "load_scheme"]
+__all__ = ["SCHEME_NAMES", "load_scheme", "scheme_for"]
 
 SCHEME_NAMES = (
     "contact_dynamics",
@@ -25,3 +26,13 @@ def load_scheme(name: str) -> Scheme:
     if name not in SCHEME_NAMES:
         raise InputError(f"scheme: no {name!r}; choose one of {', '.join(SCHEME_NAMES)}")
     return import_module(f"painleve.dynamics.schemes.{name}").SCHEME
+
+
+def scheme_for(scene: Scene, name: str) -> Scheme:
+    """The scheme of that name for a scene. Raises InputError for an unknown one and one that cannot step the scene."""
+    scheme = load_scheme(name)
+    if scene.friction_dimension > scheme.friction_dimension:
+        able = [n for n in SCHEME_NAMES if load_scheme(n).friction_dimension >= scene.friction_dimension]
+        raise InputError(f"scheme: {name} does not step friction in space, which scene {scene.name} has; "
+                         f"use one of {', '.join(able)}")  # fmt: skip
+    return scheme

@@ -11,5 +11,6 @@ SCHEME = Stepped(
     sentence="explicit Euler step, then Moreau's law at the new configuration",
     source="L. Paoli, IFIP AICT 494 (2016), section 2; J. J. Moreau, CISM 302 (1988)",
     order=1,
+    friction_dimension=2,
     code=FixedStep.CONTACT_DYNAMICS,
 )

@@ -19,7 +19,8 @@ def _words(text: str) -> frozenset[str]:
 IN_FORMULAS = _words("sin cos tan cot asin acos atan atan2 sqrt exp log abs sinh cosh tanh pi t nan inf infinity oo")
 # Variables and dimensions of trajectories, beside which the coordinates are stored ...
 IN_TRAJECTORIES = _words(
-    "time point g gamma v_n v_t r_n r_t kinetic_energy contact_work branch change outline_x outline_y floor"
+    "time point g gamma v_n v_t v_t1 v_t2 r_n r_t r_t1 r_t2 kinetic_energy contact_work branch change outline_x"
+    " outline_y floor"
 )
 # ... and of sweeps, beside which a parameter or a state key is stored when it is swept.
 IN_SWEEPS = _words(
