@@ -7,10 +7,10 @@ from functools import cache
 import numpy as np
 import sympy as sp
 
-from painleve.mechanics.friction import Segment
+from painleve.mechanics.friction import Ellipse, Polygon, Segment
 from painleve.mechanics.scene import Coordinate, Parameter, Scene, make_scene
 
-X, Y, T = (sp.Symbol(name, real=True) for name in ("x", "y", "t"))
+X, Y, Z, T = (sp.Symbol(name, real=True) for name in ("x", "y", "z", "t"))
 U_X, U_Y = sp.symbols("u_x u_y", real=True)
 
 
@@ -88,3 +88,36 @@ class Reference:
             path.append(self.step(t, h, *path[-1]))
             t += h
         return np.array([x for x, _ in path]), np.array([x for _, x in path])
+
+
+@cache
+def space_block(section: str) -> Scene:
+    """A point above the floor z = 0 with M^-1 = [[1, 0, B], [0, 1, c], [B, c, 1]], B = beta + bend sin(x), and a force.
+
+    Friction in space; `section`: "ellipse" with the axes mu and nu turned by `angle`, or "kite" with the vertices
+    mu (1, 0), nu (0, 1), -2 mu (1, 0) and -nu (0, 1).
+    """
+    names = ("beta", "c", "bend", "mu", "nu", "angle", "weight", "drag", "beat")
+    parameters = [
+        Parameter(name=n, unit="1", sentence=n, default="0", range="nonnegative" if n in ("mu", "nu") else "real")
+        for n in names
+    ]
+    beta, c, bend, mu, nu, angle, weight, drag, beat = (p.symbol for p in parameters)
+    B = beta + bend * sp.sin(X)
+    inverse = sp.Matrix([[1, 0, B], [0, 1, c], [B, c, 1]])
+    friction = {
+        "ellipse": Ellipse(mu_1=mu, mu_2=nu, angle=angle),
+        "kite": Polygon(vertices=((mu, 0), (0, nu), (-2 * mu, 0), (0, -nu))),
+    }[section]  # fmt: skip
+    return make_scene(
+        name=f"block_on_{section}",
+        sentence="a point with coupled inertia above a floor",
+        source="the project's notes, section 6, minimal scene",
+        coordinates=[Coordinate(name=n, unit="m", sentence=n) for n in ("x", "y", "z")],
+        parameters=parameters,
+        inertia=inverse.inv().applyfunc(sp.simplify),
+        force=sp.Matrix([-drag * U_X + beat * sp.sin(3 * T), beat * sp.cos(2 * T), -weight]),
+        constraint=-Z,
+        tangential_displacements=[X, Y],
+        friction=friction,
+    )

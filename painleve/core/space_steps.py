@@ -104,11 +104,11 @@ def is_jump(size, free, speed, edge, sticks):
 
     As painleve.core.steps.is_jump where the tip sticks. In space it may slip after a jump, along the edge of the wedge
     a + b.s <= 0; that edge turns, and a slip that follows it changes by h times its rate, which `free` does not hold.
-    So a jump to slip is told by a tenth of the speed.
+    So a jump to slip must also take a tenth of the speed.
     """
-    if edge <= 0.0 and sticks:
-        return size > STUCK_FACTOR * free
-    return (sticks or edge <= 0.0) and size > SLIP_FACTOR * free and size > LOST_SPEED * speed
+    if edge <= 0.0:
+        return size > STUCK_FACTOR * free and (sticks or size > LOST_SPEED * speed)
+    return sticks and size > SLIP_FACTOR * free and size > LOST_SPEED * speed
 
 
 @jit
