@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from planar_scenes import SCENE_NAMES
 from study_runs import load_study
 
 from painleve.asymptotics.theorem import classify
@@ -14,6 +13,10 @@ from painleve.mechanics.state import make_state
 from painleve.store import load
 from painleve.sweep import StudyResult
 
+SCENE_NAMES = load_study("theorem1").SCENES
+UNMAPPED = {f"gamma_map_spatial_rod_ellipse.{suffix}" for suffix in ("h5", "pdf", "png")}  # no one coefficient
+ROOTS = [("spatial_rod", "critical_oblique"), ("spatial_rod", "double_zero"),
+         ("spatial_rod_ellipse", "critical_oblique"), ("spatial_rod_ellipse", "tilted")]  # fmt: skip
 STATES = [(scene, state.name) for scene in SCENE_NAMES for state in load_scene(scene).states]
 
 
@@ -31,6 +34,7 @@ def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyRe
     result, folder = finished
     kinds, suffixes = ("distances", "members", "gamma_map"), ("h5", "pdf", "png")
     expected = {f"{kind}_{scene}.{suffix}" for kind in kinds for scene in SCENE_NAMES for suffix in suffixes}
+    expected -= UNMAPPED
     assert {path.name for path in folder.iterdir()} == expected
     assert {path.name for path in result.files} == expected
     for path in result.files:
@@ -50,12 +54,12 @@ def test_the_table_tells_the_branch_that_exact_arithmetic_decides(
 
 
 @pytest.mark.parametrize(("scene", "state"), STATES)
-def test_no_statement_is_contradicted_and_every_excess_falls_like_eps(
+def test_no_statement_is_contradicted_and_every_excess_falls_like_eps_or_its_root(
     scene: str, state: str, finished: tuple[StudyResult, Path]
 ) -> None:
     row = rows(finished)[scene, state]
     assert row["verdict"] in ("consistent", "proved")
-    assert row["slope"] == pytest.approx(1.0, abs=0.05)
+    assert row["slope"] == pytest.approx(0.5 if (scene, state) in ROOTS else 1.0, abs=0.05)
 
 
 @pytest.mark.parametrize(("scene", "length"), [("worn_tip_rod", 0.7**0.5), ("two_link_arm", 1.0)])
@@ -74,6 +78,6 @@ def test_the_hard_state_shows_both_the_misleading_sample_and_the_witnesses(
     row = rows(finished)["slender_rod", "double_zero"]
     assert row["excess_A_Aeps"]["upper"] > 0.1
     assert row["witnessed_upper"] < 1e-8
-    (line,) = [line for line in finished[0].table.splitlines() if "double_zero" in line]
+    (line,) = [line for line in finished[0].table.splitlines() if line.split()[:2] == ["slender_rod", "double_zero"]]
     assert "*" in line
     assert "* The sample alone misleads" in finished[0].table

@@ -1,4 +1,5 @@
 """The constant C in d_H = C eps + o(eps), from first derivatives (the project's notes, section 9); k <= 1.
+In space (k = 2) the rate at gamma = 0 is the root of eps: see painleve.asymptotics.space_rates.
 
 With dq = eps xi and dv = eps eta every row enters by its value and its gradient at q, known to dozens of digits. In the
 limit each branch of the law leaves a linear problem on the two unit balls, subject to grad g . xi >= 0 (the coordinates
@@ -37,6 +38,7 @@ from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.local import LocalProblem, make_local_problem
 from painleve.asymptotics.sample import KINDS
 from painleve.asymptotics.search import SLIPS, Found, Search
+from painleve.asymptotics.space_rates import root_rate
 from painleve.core.codes import Branch
 from painleve.errors import InputError
 from painleve.mechanics.derive import derive
@@ -52,7 +54,8 @@ VANISHING = 1e-60  # relative; gradients known to 320 bits are either zero, by a
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Rate:
-    """C in d_H = C eps + o(eps), exact to rounding: a maximum found by search, whose closed form is known for some.
+    """C in d_H = C eps^power + o(eps^power), exact to rounding: a maximum found by search, whose closed form is known
+    for some. power: 1, or 1/2 in space at gamma = 0.
 
     part: which members attain it; dq, dv: their offsets in units of eps, to first order; `sentence` says between what.
     """
@@ -63,6 +66,7 @@ class Rate:
     dq: np.ndarray
     dv: np.ndarray
     sentence: str
+    power: float = 1.0
 
     @cached_property
     def closed_form(self) -> sp.Expr | None:
@@ -72,17 +76,18 @@ class Rate:
         return _closed_form(self.limit) if self.part == "sticking" and self.limit.kind == "pair" else None
 
     def as_dict(self) -> dict[str, object]:
+        form = None if self.closed_form is None else str(self.closed_form)
         return {
-            "C": self.C, "closed_form": None if self.closed_form is None else str(self.closed_form), "part": self.part,
-            "dq": self.dq.tolist(), "dv": self.dv.tolist(), "sentence": self.sentence,
+            "C": self.C, "power": self.power, "closed_form": form, "part": self.part, "dq": self.dq.tolist(),
+            "dv": self.dv.tolist(), "sentence": self.sentence,
         }  # fmt: skip
 
 
 def rate(limit: LimitSet) -> Rate:
     """The rate of d_H(A, A_eps); at an isolated critical state that of d_H({u-, u_tilde}, A_eps).
 
-    Raises InputError where the limit set or the neighbourhood of a critical state is undecided, and for more than two
-    shape coordinates.
+    Raises InputError where the limit set or the neighbourhood of a critical state is undecided, for more than two shape
+    coordinates, and in space unless gamma = 0 on a disc or an ellipse and the jump ends in slip.
     """
     where = f"state {limit.state.label}"
     if limit.kind == "undecided":
@@ -91,6 +96,8 @@ def rate(limit: LimitSet) -> Rate:
     if near is not None and near.kind is Neighbourhood.UNDECIDED:
         raise InputError(f"{where}: no rate while it is undecided which part of A is approached: {near.reason}")
     isolated = near is not None and near.kind is Neighbourhood.ISOLATED
+    if limit.state.scene.friction_dimension == 2:
+        return _in_space(limit, isolated)
     problem = make_local_problem(limit)
     if len(problem.shape) > 2:
         raise InputError(f"rate: scene {limit.state.scene.name} has {len(problem.shape)} coordinates on which the law "
@@ -105,6 +112,14 @@ def rate(limit: LimitSet) -> Rate:
     return Rate(
         limit=limit, C=found.value, part=_part(limit, found), dq=_unit_offset(problem, found),
         dv=found.dv, sentence=sentence,
+    )  # fmt: skip
+
+
+def _in_space(limit: LimitSet, isolated: bool) -> Rate:
+    root = root_rate(limit, isolated)
+    return Rate(
+        limit=limit, C=root.C, part="beside the end u_tilde of the segment", dq=root.dq, dv=root.dv, power=0.5,
+        sentence=_sentence(limit, isolated).replace("eps + o(eps)", "sqrt(eps) + o(sqrt(eps))"),
     )  # fmt: skip
 
 

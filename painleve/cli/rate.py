@@ -1,4 +1,4 @@
-"""`painleve rate SCENE`: the constant C in d_H = C eps + o(eps)."""
+"""`painleve rate SCENE`: the constant C in d_H = C eps + o(eps), or C sqrt(eps) + o(sqrt(eps))."""
 
 from __future__ import annotations
 

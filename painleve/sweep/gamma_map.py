@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import sympy as sp
 import xarray as xr
 
 from painleve.asymptotics.theorem import classify
@@ -142,11 +143,18 @@ def _follow(kernels: Kernels, state: State, values: np.ndarray) -> _Path:
             if rows is None:
                 break
             table[i] = rows
-    normal = slice(1, 1 + kernels.scene.dimension)
-    return _Path(
-        a=table[:, index("a")], b=np.abs(table[:, index("b")]), squared=np.sum(table[:, normal] ** 2, axis=1),
-        friction=table[:, index("mu_plus")],
-    )  # fmt: skip
+    a, squared = table[:, index("a")], np.sum(table[:, 1 : 1 + kernels.scene.dimension] ** 2, axis=1)
+    if kernels.scene.friction_dimension == 2:  # the rows have a disc as the unit disc
+        friction = _coefficients(kernels, state, values)
+        return _Path(a=a, b=(a - table[:, index("edge_plus")]) / friction, squared=squared, friction=friction)
+    return _Path(a=a, b=np.abs(table[:, index("b")]), squared=squared, friction=table[:, index("mu_plus")])
+
+
+def _coefficients(kernels: Kernels, state: State, values: np.ndarray) -> np.ndarray:
+    """The disc's coefficient of friction along the path."""
+    scene, index = kernels.scene, kernels.derivation.shape[0]
+    mu = scene.friction.mu.xreplace({s: x for s, x in state.substitution.items() if s != scene.q[index]})  # type: ignore[union-attr]
+    return np.array([float(mu.xreplace({scene.q[index]: sp.Float(x)})) for x in values])
 
 
 def _touch(kernels: Kernels, state: State, q: np.ndarray, value: float) -> np.ndarray | None:
@@ -156,7 +164,7 @@ def _touch(kernels: Kernels, state: State, q: np.ndarray, value: float) -> np.nd
     shape = kernels.derivation.shape
     q[shape[0]] = value
     kernels.rows_at(q, p, rows)
-    if len(shape) == 1:
+    if len(shape) == 1 or kernels.derivation.carried:
         return rows
     follower, before = shape[1], q[shape[1]]
     for _ in range(NEWTON_STEPS):
