@@ -74,6 +74,14 @@ def test_proposition_1_holds_at_every_step_of_random_scenes(section: str) -> Non
     assert branches == {Branch.FREE, Branch.STICK, Branch.SLIP}
 
 
+@pytest.mark.parametrize("width", [0.0, 1e-12, 1e-9, 1e-6, 1e-3])
+def test_rounding_does_not_take_an_impulse_out_of_a_thin_ellipse(width: float) -> None:
+    for seed in range(1, 12):
+        found = simulate(random_start("ellipse", seed, nu=width), step=4e-3, until=1.6)
+        assert found.proposition1 is not None
+        assert found.proposition1.worst("membership")[0] <= 1e-13
+
+
 @pytest.mark.parametrize("section", SECTIONS)
 def test_the_margins_of_proposition_1_notice_a_wrong_step(section: str) -> None:
     start = random_start(section, 3, weight=10.0, mu=0.5, nu=0.3, bend=0.0)

@@ -45,8 +45,8 @@ def gamma_along(motion: Motion, rows: np.ndarray) -> np.ndarray:
 def nearest_impulse(motion: Motion, rows: np.ndarray, impulse: np.ndarray) -> np.ndarray:
     """An impulse (n, 1 + k) of the friction cone near the given one: itself where that is in the cone.
 
-    Planar friction and polygons: the tangential part nearest to the given one, with the normal part max(r_n, 0). Discs
-    and ellipses: shortened in the tangents in which the section is the unit disc.
+    The normal part is max(r_n, 0). The tangential part is the nearest one in the plane and for polygons, and for discs
+    and ellipses the nearest of three.
     """
     found, friction = np.maximum(impulse, 0.0), motion.scene.friction
     normal, given, tail = found[:, 0], impulse[:, 1:], 4 * motion.scene.dimension
@@ -58,12 +58,30 @@ def nearest_impulse(motion: Motion, rows: np.ndarray, impulse: np.ndarray) -> np
         found[:, 1:] = _nearest_in_polygons(vertices, given)
     elif friction is not None:
         first = motion.rows.index("E_11")
-        E = rows[:, first : first + 4].reshape(-1, 2, 2)
-        scaled = np.einsum("nij,nj->ni", np.linalg.pinv(E), given)
-        size = np.linalg.norm(scaled, axis=1)
-        shorter = np.divide(normal, size, out=np.ones_like(size), where=size > normal)
-        found[:, 1:] = np.einsum("nij,nj,n->ni", E, scaled, shorter)
+        found[:, 1:] = _near_in_ellipses(rows[:, first : first + 4].reshape(-1, 2, 2), normal, given)
     return found
+
+
+def _near_in_ellipses(E: np.ndarray, radius: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """A point (n, 2) of each ellipse E sigma, |sigma| <= radius (n,), near each point (n, 2): itself if it is inside.
+
+    Of the point shortened and of those that are clamped along either axis the nearest: on a thin ellipse rounding
+    across it shortens much, and clamping little.
+    """
+    axes, sizes, _ = np.linalg.svd(E)
+    along = np.einsum("nji,nj->ni", axes, points)
+    sigma = np.divide(along, sizes, out=np.zeros_like(along), where=sizes > 0.0)
+    length = np.linalg.norm(sigma, axis=1)
+    shorter = np.divide(radius, length, out=np.ones_like(length), where=length > radius)
+    candidates = [sigma * shorter[:, None]]
+    for kept in (0, 1):
+        clamped = np.clip(sigma, -radius[:, None], radius[:, None])
+        rest = np.sqrt((radius - clamped[:, kept]) * (radius + clamped[:, kept]))
+        clamped[:, 1 - kept] = np.clip(sigma[:, 1 - kept], -rest, rest)
+        candidates.append(clamped)
+    moved = np.stack(candidates, axis=1) * sizes[:, None, :]
+    best = ((moved - along[:, None, :]) ** 2).sum(axis=2).argmin(axis=1)
+    return np.asarray(np.einsum("nij,nj->ni", axes, moved[np.arange(len(points)), best]))
 
 
 def _nearest_in_polygons(vertices: np.ndarray, points: np.ndarray) -> np.ndarray:
