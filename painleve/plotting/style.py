@@ -33,7 +33,7 @@ __all__ = [
 # M. Okabe and K. Ito, "Color Universal Design" (2008).
 PALETTE = MappingProxyType({
     "black": "#000000", "orange": "#E69F00", "sky": "#56B4E9", "green": "#009E73", "yellow": "#F0E442",
-    "blue": "#0072B2", "vermilion": "#D55E00", "purple": "#CC79A7",
+    "blue": "#0072B2", "vermilion": "#D55E00", "purple": "#CC79A7", "violet": "#4B0092",
 })  # fmt: skip
 GREY = "#777777"
 # Any: matplotlib's own type of such a table is a list of all its keys.
@@ -61,7 +61,7 @@ LAW_MARKS = MappingProxyType({
     "stick": Mark(colour=PALETTE["orange"], marker="s", label="stick"),
     "slip_plus": Mark(colour=PALETTE["green"], marker="^", label="slip, friction +μ"),
     "slip_minus": Mark(colour=PALETTE["purple"], marker="v", label="slip, friction −μ"),
-    "slip": Mark(colour=PALETTE["vermilion"], marker="P", label="slip"),
+    "slip": Mark(colour=PALETTE["violet"], marker="P", label="slip"),
     "frictionless": Mark(colour=PALETTE["blue"], marker="D", label="impact without friction"),
 })  # fmt: skip
 THEOREM_MARKS = MappingProxyType({
