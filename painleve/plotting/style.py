@@ -30,7 +30,7 @@ __all__ = [
     "with_unit",
 ]
 
-# M. Okabe and K. Ito, "Color Universal Design" (2008).
+# M. Okabe and K. Ito, "Color Universal Design" (2008), and a violet that is darker than all of theirs.
 PALETTE = MappingProxyType({
     "black": "#000000", "orange": "#E69F00", "sky": "#56B4E9", "green": "#009E73", "yellow": "#F0E442",
     "blue": "#0072B2", "vermilion": "#D55E00", "purple": "#CC79A7", "violet": "#4B0092",
