@@ -61,7 +61,7 @@ LAW_MARKS = MappingProxyType({
     "stick": Mark(colour=PALETTE["orange"], marker="s", label="stick"),
     "slip_plus": Mark(colour=PALETTE["green"], marker="^", label="slip, friction +μ"),
     "slip_minus": Mark(colour=PALETTE["purple"], marker="v", label="slip, friction −μ"),
-    "slip": Mark(colour=PALETTE["violet"], marker="P", label="slip"),
+    "slip": Mark(colour=PALETTE["violet"], marker="p", label="slip"),
     "frictionless": Mark(colour=PALETTE["blue"], marker="D", label="impact without friction"),
 })  # fmt: skip
 THEOREM_MARKS = MappingProxyType({
