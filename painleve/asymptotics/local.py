@@ -20,7 +20,7 @@ from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.space_base import space_base
 from painleve.core.polygon_offset import PolygonBase
 from painleve.core.space_offset import SpaceBase
-from painleve.core.taylor import Polynomials, sparse_polynomials
+from painleve.core.taylor import Polynomials, monomial_block, polynomial_block, sparse_polynomials
 from painleve.kernels.compiled import Kernels, make_kernels
 from painleve.mechanics.balls import ball
 from painleve.mechanics.jets import jets, monomials
@@ -111,6 +111,29 @@ class LocalProblem:
         if arithmetic != "taylor" and not np.all(found.remainder <= TRUSTED):
             return None
         return found
+
+    def gradient(self, row: int) -> np.ndarray:
+        """The derivatives of a row with respect to the shape coordinates, at the base state."""
+        found = np.zeros(len(self.shape))
+        if row in self.kernels.rows.varying:
+            for powers, value in zip(self.powers, self.table[self.kernels.rows.varying.index(row)], strict=True):
+                if sum(powers) == 1:
+                    found[powers.index(1)] = value
+        return found
+
+    def differences(self, eps: float, expansion: Expansion | None, x: np.ndarray) -> np.ndarray:
+        """All rows minus their base values (R, n) at the shape offsets eps x, x (s, n)."""
+        dq, n = np.ascontiguousarray(eps * x), x.shape[1]
+        values = np.empty((len(self.table), n))
+        if expansion is not None:
+            monomials = np.empty((expansion.polynomials.parents.size, n))
+            monomial_block(expansion.polynomials, dq, monomials)
+            polynomial_block(expansion.polynomials, monomials, values)
+        else:
+            self.kernels.varying_block(dq, self.q, self.p, self.base, values)
+        full = np.zeros((self.base.size, n))
+        full[list(self.kernels.rows.varying)] = values
+        return full
 
     def _remainder(self, orders: np.ndarray, eps: float) -> np.ndarray:
         """Lagrange's remainder after the highest degree used, from derivatives enclosed over the ball, and the terms

@@ -17,15 +17,16 @@ import flint
 import numpy as np
 
 from painleve.asymptotics.distance import Attained, Distance
+from painleve.asymptotics.free_member import free_member, is_inside
 from painleve.asymptotics.limit_set import LimitSet
-from painleve.asymptotics.local import BITS, Arithmetic, Expansion, LocalProblem, make_local_problem
+from painleve.asymptotics.local import BITS, Arithmetic, LocalProblem, make_local_problem
 from painleve.asymptotics.member import Member, base_balls, make_member, row_balls
 from painleve.asymptotics.sample import KINDS, check_eps
 from painleve.asymptotics.search import SLIPS, Found, Search
+from painleve.asymptotics.space_optimise import optimise_in_space
 from painleve.asymptotics.witness import find_family
 from painleve.core.branch_excess import REACH
 from painleve.core.codes import Branch
-from painleve.core.taylor import monomial_block, polynomial_block
 from painleve.errors import InputError
 from painleve.sets import Bounds, excess_of_segment_from_profile
 
@@ -52,21 +53,20 @@ def optimise_distance(limit: LimitSet, eps: float, options: OptimiseOptions | No
     """Both excesses by optimisation: e(A_eps, A) is bounded from below by a true member at the maximum found, whose
     estimate and error are in the settings; e(A, A_eps) from above by witnesses, or by the nearest members found.
 
-    Raises InputError for eps <= 0, a state whose limit set is undecided, friction in space, and more than two shape
+    Raises InputError for eps <= 0, a state whose limit set is undecided and, in the plane, more than two shape
     coordinates.
     """
     options, eps = options or OptimiseOptions(), check_eps(eps)
     if limit.kind == "undecided":
         raise InputError(f"state {limit.state.label}: no distance to a limit set that is undecided: {limit.reason}")
     if limit.state.scene.friction_dimension == 2:
-        raise InputError(f"optimise: scene {limit.state.scene.name} has friction in space, which this method does not "
-                         "search; use the method sample")  # fmt: skip
+        return optimise_in_space(limit, eps, starts=options.starts, arithmetic=options.arithmetic)
     problem = make_local_problem(limit)
     if len(problem.shape) > 2:
         raise InputError(f"optimise: scene {limit.state.scene.name} has {len(problem.shape)} coordinates on which the "
                          "law depends; at most 2 are searched; use the method sample")  # fmt: skip
     expansion = problem.expansion(eps, options.arithmetic)
-    differences = partial(_differences, problem, eps, expansion)
+    differences = partial(problem.differences, eps, expansion)
     search = Search(problem, eps, KINDS[limit.kind], differences, starts=options.starts)
     forward, estimate, error = _excess_of_members(search)
     backward, how = _excess_of_limit(search)
@@ -88,7 +88,7 @@ def optimise_distance(limit: LimitSet, eps: float, options: OptimiseOptions | No
 
 def _excess_of_members(search: Search) -> tuple[Attained, float, float]:
     """e(A_eps, A): the bound, the estimate of the supremum, and its estimated relative error."""
-    free, found = _free_member(search, away=True), search.best(search.branches, search.kind)
+    free, found = free_member(search.problem, search.eps, away=True), search.best(search.branches, search.kind)
     if found is None or found.value <= 1.0:
         return Attained(bounds=Bounds.at_least(free.distance[0]), member=free), search.eps, 0.0
     member = _member(search, found) or free
@@ -104,7 +104,7 @@ def _excess_of_limit(search: Search) -> tuple[Attained, str]:
     family = find_family(problem.limit, eps, within=max(SHADOW * eps, ROUNDED * problem.length))
     if family is not None:
         return Attained(bounds=Bounds.at_most(family.bound), member=family.last), "witnesses shadow all of A"
-    first, reach = _free_member(search, away=False), search.best((Branch.STICK,), REACH)
+    first, reach = free_member(problem, eps, away=False), search.best((Branch.STICK,), REACH)
     last = _member(search, reach) if reach is not None else None
     members = [first] if last is None else [first, last]
     along = [float(m.offset @ problem.direction) for m in members]
@@ -122,40 +122,12 @@ def _above_line(problem: LocalProblem, member: Member, along: float) -> float:
     return float(np.linalg.norm(across))
 
 
-def _free_member(search: Search, *, away: bool) -> Member:
-    """v_eps itself, as far from A or as far along the jump as the ball allows, over a configuration with g < 0."""
-    p = search.problem
-    outward = p.base[1 : 1 + p.dimension] / np.linalg.norm(p.base[1 : 1 + p.dimension])
-    direction = p.direction if p.length > 0.0 else outward
-    dv = (-direction if away else direction) * (search.eps * (1.0 - 1e-15))
-    for size in (0.5, 0.1, 1e-2, 1e-3, 1e-4):
-        member = make_member(p, outward * (size * search.eps), dv)
-        if member.branch is Branch.FREE:
-            return member
-    raise ArithmeticError("no configuration with g < 0 was found, yet grad g is not zero")
-
-
-def _differences(problem: LocalProblem, eps: float, expansion: Expansion | None, x: np.ndarray) -> np.ndarray:
-    """Rows minus their base values at the shape offsets eps x (s, n)."""
-    dq, n = np.ascontiguousarray(eps * x), x.shape[1]
-    values = np.empty((len(problem.table), n))
-    if expansion is not None:
-        monomials = np.empty((expansion.polynomials.parents.size, n))
-        monomial_block(expansion.polynomials, dq, monomials)
-        polynomial_block(expansion.polynomials, monomials, values)
-    else:
-        problem.kernels.varying_block(dq, problem.q, problem.p, problem.base, values)
-    full = np.zeros((problem.base.size, n))
-    full[list(problem.kernels.rows.varying)] = values
-    return full
-
-
 def _member(search: Search, found: Found) -> Member | None:
     """The true member nearest to what was found, nudged off the boundaries of its branch as little as it takes."""
     for nudge, tilt in sorted(product(NUDGES, repeat=2), key=sum):
         dq = _configuration(search, found, nudge, tilt)
         dv = _velocity(search, found, dq, nudge, tilt)
-        if not (_inside(dq, search.eps) and _inside(dv, search.eps)):
+        if not (is_inside(dq, search.eps) and is_inside(dv, search.eps)):
             continue
         try:
             member = make_member(search.problem, dq, dv)
@@ -196,8 +168,3 @@ def _velocity(search: Search, found: Found, dq: list[flint.arb], nudge: float, t
         lack = -lam * rows[p.kernels.rows.index(SLIPS[found.branch])] - v_n
         squared = sum((x * x for x in w), flint.arb(0))
         return [flint.arb((x + lack * y / squared).mid()) for x, y in zip(dv, w, strict=True)]
-
-
-def _inside(x: list[flint.arb], eps: float) -> bool:
-    with flint.ctx.workprec(BITS):
-        return bool(sum((y * y for y in x), flint.arb(0)) <= flint.arb(float(eps)) ** 2)

@@ -1,0 +1,31 @@
+"""Free members, which are known in closed form, and the exact test of whether an offset is in its ball."""
+
+from __future__ import annotations
+
+import flint
+import numpy as np
+
+from painleve.asymptotics.local import BITS, LocalProblem
+from painleve.asymptotics.member import Member, make_member
+from painleve.core.codes import Branch
+
+__all__ = ["free_member", "is_inside"]
+
+
+def free_member(problem: LocalProblem, eps: float, *, away: bool) -> Member:
+    """v_eps itself, as far from A or as far along the jump as the ball allows, over a configuration with g < 0."""
+    p = problem
+    outward = p.base[1 : 1 + p.dimension] / np.linalg.norm(p.base[1 : 1 + p.dimension])
+    direction = p.direction if p.length > 0.0 else outward
+    dv = (-direction if away else direction) * (eps * (1.0 - 1e-15))
+    for size in (0.5, 0.1, 1e-2, 1e-3, 1e-4):
+        member = make_member(p, outward * (size * eps), dv)
+        if member.branch is Branch.FREE:
+            return member
+    raise ArithmeticError("no configuration with g < 0 was found, yet grad g is not zero")
+
+
+def is_inside(x: list[flint.arb], eps: float) -> bool:
+    """Whether an exact offset is in the closed ball for certain."""
+    with flint.ctx.workprec(BITS):
+        return bool(sum((y * y for y in x), flint.arb(0)) <= flint.arb(float(eps)) ** 2)

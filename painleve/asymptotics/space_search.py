@@ -1,0 +1,104 @@
+"""The search for the farthest member with friction in space: ascents from the best places of a sample on every chart.
+
+Each ascent is sequential quadratic programming (scipy's SLSQP) with gradients by central differences, which a compiled
+batch makes cheap; then a cloud of points that shrinks about the best place, which crosses kinks of S that the ascent
+takes for smooth. It is a search: a maximum whose basin holds none of the starts is missed, and nothing shows that.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import minimize
+
+from painleve.asymptotics.space_ball import SpaceBall
+from painleve.asymptotics.space_charts import Chart, charts_of
+
+__all__ = ["SpaceFound", "search_in_space"]
+
+DIFFERENCE = 1e-6
+MOST_STEPS = 100
+CLOUD, ROUNDS, WIDEST = 256, 48, 1e-2  # points a round, rounds, and the first radius
+TOLERANCE = 1e-12  # of eps: by what a condition may be missed; the member is moved inside
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SpaceFound:
+    """The best place of a search: dist/eps, where (in units of eps), on which chart, and what the cloud added to it."""
+
+    value: float
+    x: np.ndarray
+    dv: np.ndarray
+    chart: str
+    error: float
+
+
+def search_in_space(ball: SpaceBall, starts: int) -> SpaceFound | None:
+    """The best place of all charts; None where no start is a member in contact."""
+    found = [_search(chart, starts) for chart in charts_of(ball)]
+    return max((f for f in found if f is not None), key=lambda f: f.value, default=None)
+
+
+def _search(chart: Chart, count: int) -> SpaceFound | None:
+    starts = chart.starts(count)
+    tops = [_ascend(chart, z) for z in starts.T]
+    if not tops:
+        return None
+    value, z = max(tops, key=lambda top: top[0])
+    better, z = _cloud(chart, value, z)
+    x, dv = chart.place(z[:, None])
+    return SpaceFound(value=better, x=x[:, 0], dv=dv[:, 0], chart=chart.name, error=better - value)
+
+
+def _ascend(chart: Chart, start: np.ndarray) -> tuple[float, np.ndarray]:
+    """(value, place): the better one of the start and of where SLSQP goes from there."""
+    scale = max(1.0, _safe_value(chart, start))
+    steps = np.hstack([np.zeros((start.size, 1)), DIFFERENCE * np.eye(start.size), -DIFFERENCE * np.eye(start.size)])
+    known: dict[bytes, tuple[np.ndarray, ...]] = {}
+
+    def local(z: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Value, gradient, conditions and their gradients."""
+        key = z.tobytes()
+        if key not in known:
+            known.clear()
+            value, conditions = chart.evaluate(z[:, None] + steps)
+            n = z.size
+            slope = (value[1 : n + 1] - value[n + 1 :]) / (2.0 * DIFFERENCE)
+            slopes = (conditions[:, 1 : n + 1] - conditions[:, n + 1 :]) / (2.0 * DIFFERENCE)
+            known[key] = value[0], slope, conditions[:, 0], slopes
+        return known[key]
+
+    with np.errstate(all="ignore"):
+        result = minimize(
+            lambda z: (-local(z)[0] / scale, -local(z)[1] / scale), start, jac=True, method="SLSQP",
+            bounds=chart.bounds, options={"maxiter": MOST_STEPS, "ftol": 1e-14},
+            constraints={"type": "ineq", "fun": lambda z: local(z)[2], "jac": lambda z: local(z)[3]},
+        )  # fmt: skip
+    ends = [start, chart.repaired(result.x[:, None])[:, 0]] if np.all(np.isfinite(result.x)) else [start]
+    return max(((_safe_value(chart, z), z) for z in ends), key=lambda end: end[0])
+
+
+def _safe_value(chart: Chart, z: np.ndarray) -> float:
+    """The value at z, -inf where z is not the place of a member."""
+    return float(_values(chart, z[:, None])[0])
+
+
+def _values(chart: Chart, z: np.ndarray) -> np.ndarray:
+    value, conditions = chart.evaluate(z)
+    return np.where(conditions.min(axis=0) >= -TOLERANCE, value, -np.inf)
+
+
+def _cloud(chart: Chart, value: float, z: np.ndarray) -> tuple[float, np.ndarray]:
+    rng, radius = np.random.default_rng(0), WIDEST
+    lower, upper = np.array(chart.bounds).T
+    for _ in range(ROUNDS):
+        steps = rng.normal(size=(z.size, CLOUD)) * radius
+        tried = chart.repaired(np.clip(z[:, None] + steps, lower[:, None], upper[:, None]))
+        values = _values(chart, tried)
+        best = int(np.argmax(values))
+        if values[best] > value:
+            value, z = float(values[best]), tried[:, best]
+        else:
+            radius *= 0.5
+    return value, z
