@@ -11,7 +11,7 @@ from reference_law import DIGITS, Reference, dot, law, norm, to_mp
 from painleve.asymptotics.limit_set import LimitSet, limit_set
 from painleve.asymptotics.local import Arithmetic, LocalProblem, make_local_problem
 from painleve.asymptotics.member import make_member
-from painleve.asymptotics.optimise import OptimiseOptions, _differences, optimise_distance
+from painleve.asymptotics.optimise import OptimiseOptions, optimise_distance
 from painleve.asymptotics.rates import rate
 from painleve.asymptotics.sample import SampleOptions, _Stream
 from painleve.core.sampling import BLOCK
@@ -31,7 +31,7 @@ def floats(problem: LocalProblem, dq: np.ndarray, dv: np.ndarray, eps: float, ar
     """g, v_n and a + s b on both edges in doubles, from differences of rows."""
     d, rows = problem.dimension, problem.kernels.rows
     x = (dq[list(problem.shape)] / eps)[:, None]
-    change = _differences(problem, eps, problem.expansion(eps, arithmetic), x)[:, 0]
+    change = problem.differences(eps, problem.expansion(eps, arithmetic), x)[:, 0]
     row = problem.base + change
     v_n = change[1 : 1 + d] @ problem.u + row[1 : 1 + d] @ dv
     return [change[0] + problem.carried * (problem.carried_direction @ dq), v_n] + [
@@ -79,7 +79,7 @@ def test_at_the_double_zero_plain_evaluation_loses_the_sign_of_gamma_and_the_exp
     edge = problem.kernels.rows.index("edge_plus")
     signs = {}
     for arithmetic in ("automatic", "plain"):
-        change = _differences(problem, eps, problem.expansion(eps, arithmetic), x)
+        change = problem.differences(eps, problem.expansion(eps, arithmetic), x)
         signs[arithmetic] = np.mean(problem.base[edge] + change[edge] > 0.0)
     assert signs["automatic"] == 1.0
     assert signs["plain"] < 0.9

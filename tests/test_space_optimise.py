@@ -13,6 +13,7 @@ from painleve.asymptotics.optimise import OptimiseOptions, optimise_distance
 from painleve.asymptotics.sample import KINDS, SampleOptions, sample_distance
 from painleve.asymptotics.space_ball import SpaceBall
 from painleve.asymptotics.space_charts import Along, Sticking, Whole
+from painleve.asymptotics.space_rates import root_rate
 from painleve.core.codes import Branch
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
@@ -79,6 +80,18 @@ def test_the_supremum_in_space_falls_as_eps_and_where_an_oblique_slip_is_critica
     limit = limit_of("spatial_rod", state)
     small, large = (estimate(limit, eps) for eps in (1e-11, 1e-9))
     assert np.log10(large / small) / 2 == pytest.approx(rate, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("scene", "state"),
+    [("spatial_rod", "critical_oblique"), ("spatial_rod", "double_zero"), ("spatial_rod_ellipse", "tilted")],
+)
+def test_the_supremum_tends_to_the_derived_constant_times_the_root_of_eps(scene, state):
+    limit = limit_of(scene, state)
+    constant = root_rate(limit, isolated=False).C
+    lacks = [abs(estimate(limit, eps) / np.sqrt(eps) / constant - 1) for eps in (1e-8, 1e-10)]
+    assert lacks[1] < 1e-4
+    assert lacks[1] == pytest.approx(lacks[0] / 10, rel=0.05)  # what is left is O(sqrt(eps))
 
 
 def distance_to(limit: LimitSet, point: np.ndarray) -> float:

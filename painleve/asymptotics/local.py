@@ -92,6 +92,15 @@ class LocalProblem:
     def degrees(self) -> np.ndarray:
         return np.array([sum(powers) for powers in self.powers], dtype=int)
 
+    @cached_property
+    def gradients(self) -> np.ndarray:
+        """(rows, s): derivatives of all rows with respect to the shape coordinates, at the base state."""
+        full = np.zeros((self.base.size, len(self.shape)))
+        for m, powers in enumerate(self.powers):
+            if sum(powers) == 1:
+                full[list(self.kernels.rows.varying), powers.index(1)] = self.table[:, m]
+        return full
+
     def expansion(self, eps: float, arithmetic: Arithmetic = "automatic") -> Expansion | None:
         """The lowest order of each row that is accurate on balls of radius eps; None: evaluate the rows plainly.
 
@@ -110,15 +119,6 @@ class LocalProblem:
         found = self._expansion(choice + orders[0], eps)
         if arithmetic != "taylor" and not np.all(found.remainder <= TRUSTED):
             return None
-        return found
-
-    def gradient(self, row: int) -> np.ndarray:
-        """The derivatives of a row with respect to the shape coordinates, at the base state."""
-        found = np.zeros(len(self.shape))
-        if row in self.kernels.rows.varying:
-            for powers, value in zip(self.powers, self.table[self.kernels.rows.varying.index(row)], strict=True):
-                if sum(powers) == 1:
-                    found[powers.index(1)] = value
         return found
 
     def differences(self, eps: float, expansion: Expansion | None, x: np.ndarray) -> np.ndarray:

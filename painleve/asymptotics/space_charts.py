@@ -28,6 +28,7 @@ __all__ = ["Along", "Chart", "Sticking", "Whole", "charts_of"]
 SAMPLE = 16384
 APART = 0.4  # two starts, at the least
 PASSES, TINY = 4, 1e-300
+VANISHING = 1e-12  # relative to all slopes: p has none, but for the rounding of balls
 DEPTHS = 15  # values of m that a start is tried with
 
 
@@ -93,8 +94,9 @@ class Along:
         self.name, self.ball = "along A", ball
         self.edge = ball.problem.kernels.rows.edge(ball.problem.critical_edge)
         self.across = np.linalg.svd(ball.normal[None, :])[2][1:].T
-        slope = ball.problem.gradient(self.edge)
-        self.sloping = bool(np.any(slope))
+        slopes = np.abs(ball.problem.gradients)
+        slope = ball.problem.gradients[self.edge]
+        self.sloping = bool(np.max(slopes[self.edge], initial=0.0) > VANISHING * np.max(slopes, initial=0.0))
         self.turn = np.linalg.svd(slope[None, :])[2] if self.sloping else np.eye(ball.shape)
         self.most = float(np.arcsinh(1.0 / ball.eps))  # x up to 1, and lambda_bar up to twice the jump's
         self.bounds = [(-1.0, 1.0)] * ball.places + [(-self.most, self.most)] + [(-1.0, 1.0)] * (ball.dimension - 1)

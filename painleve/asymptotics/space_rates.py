@@ -73,7 +73,7 @@ class _Search:
     def __init__(self, problem: LocalProblem, isolated: bool) -> None:
         d, base, rows = problem.dimension, problem.base, problem.kernels.rows
         self.problem, self.isolated = problem, isolated
-        gradients = _gradients(problem)
+        gradients = problem.gradients
         self.p, self.g = gradients[rows.index("edge_plus")], gradients[0]
         self.w_n = base[1 : 1 + d]
         self.turn = problem.u @ gradients[1 : 1 + d]
@@ -125,12 +125,3 @@ class _Search:
             along = np.maximum(along, 0.0)
         squared = along**2 + y**2 * (float(self.side @ self.side) - inward**2)
         return np.where(nu - self.jump * p > 1e-12, squared, 0.0)
-
-
-def _gradients(problem: LocalProblem) -> np.ndarray:
-    """(rows, s): derivatives of all rows with respect to the shape coordinates."""
-    full = np.zeros((problem.base.size, len(problem.shape)))
-    for m, powers in enumerate(problem.powers):
-        if sum(powers) == 1:
-            full[list(problem.kernels.rows.varying), powers.index(1)] = problem.table[:, m]
-    return full
