@@ -62,7 +62,8 @@ def _conic_sign(state: State, d: Derivation) -> Signed:
 def least_energy(state: State, edge: int, gamma: Sign) -> LeastEnergy:
     """The jump at a state with gamma(q) <= 0 attained on that edge."""
     d = derive(state.scene)
-    slip = state.scene.tangents.T * sp.Matrix(state.scene.u)
+    # Numbers from here on: of matrices of formulas a determinant may take minutes.
+    slip = state.exact(state.scene.tangents).T * sp.Matrix(state.u)
     if state.scene.friction_dimension == 1:
         return _planar(state, d, slip[0])
     if gamma is Sign.ZERO:
@@ -72,14 +73,14 @@ def least_energy(state: State, edge: int, gamma: Sign) -> LeastEnergy:
 
 def _planar(state: State, d: Derivation, slip: sp.Expr) -> LeastEnergy:
     """The ray has s = -a/b: the jump ends where the tip sticks, if the slip is in the destabilising sense."""
-    b, C = d.couplings[0], d.compliance[0]
-    drive = exact_sign(state.exact(slip * b))
+    a, b, C = (state.exact(x) for x in (d.a, d.couplings[0], d.compliance[0]))
+    drive = exact_sign(slip * b)
     if drive.sign is Sign.UNDECIDED:
         return LeastEnergy(undecided=f"the sense of the slip is undecided: {drive.reason}")
     if drive.sign is not Sign.POSITIVE:
         return LeastEnergy()
-    determinant = d.a * C - b**2
-    return LeastEnergy(impulse=(slip * b / determinant, -slip * d.a / determinant), after="sticks")
+    determinant = a * C - b**2
+    return LeastEnergy(impulse=(slip * b / determinant, -slip * a / determinant), after="sticks")
 
 
 def _along_ray(state: State, d: Derivation, slip: sp.MatrixBase, edge: int) -> LeastEnergy:
@@ -89,38 +90,39 @@ def _along_ray(state: State, d: Derivation, slip: sp.MatrixBase, edge: int) -> L
         if any(exact_sign(state.exact(d.edge_compliance(i))).sign is not Sign.POSITIVE for i in others):
             return LeastEnergy(undecided="gamma = 0 on a whole edge of the friction polygon (neither H4 nor "
                                "H'4 holds): the ray of impulses is not unique, and nothing is claimed")  # fmt: skip
-    return _on_ray(state, d, slip, d.edge_direction(edge))
+    return _on_ray(state, d, slip, state.exact(d.edge_direction(edge)))
 
 
 def _on_ray(state: State, d: Derivation, slip: sp.MatrixBase, s: sp.MatrixBase) -> LeastEnergy:
-    drive = exact_sign(state.exact(-(slip.T * s)[0, 0]))
+    drive = exact_sign(-(slip.T * s)[0, 0])
     if drive.sign is Sign.UNDECIDED:
         return LeastEnergy(undecided=f"the sense of the slip is undecided: {drive.reason}")
     if drive.sign is not Sign.POSITIVE:
         return LeastEnergy()
-    size = -(slip.T * s)[0, 0] / (s.T * _reduced(d) * s)[0, 0]
+    size = -(slip.T * s)[0, 0] / (s.T * _reduced(state, d) * s)[0, 0]
     return LeastEnergy(impulse=(size, *(size * x for x in s)), after=_after(state, d, slip, size * s))
 
 
-def _reduced(d: Derivation) -> sp.MatrixBase:
+def _reduced(state: State, d: Derivation) -> sp.MatrixBase:
     """Q = C - b b^T/a."""
-    return d.compliance - d.couplings * d.couplings.T / d.a
+    b = state.exact(d.couplings)
+    return state.exact(d.compliance) - b * b.T / state.exact(d.a)
 
 
 def _after(state: State, d: Derivation, slip: sp.MatrixBase, r_t: sp.MatrixBase) -> str:
     """What the tip does after an impulse that keeps its normal velocity zero."""
-    left = slip + _reduced(d) * r_t
-    stays = all(exact_sign(state.exact(x)).sign is Sign.ZERO for x in left)
+    left = slip + _reduced(state, d) * r_t
+    stays = all(exact_sign(x).sign is Sign.ZERO for x in left)
     return "sticks" if stays else "slips on in another direction"
 
 
 def _in_wedge(state: State, d: Derivation, slip: sp.MatrixBase) -> LeastEnergy:
     """gamma < 0 in space."""
-    if all(exact_sign(state.exact(x)).sign is Sign.ZERO for x in slip):
+    if all(exact_sign(x).sign is Sign.ZERO for x in slip):
         return LeastEnergy()
-    Q = _reduced(d)
-    stick = -(Q.adjugate() * slip) / Q.det()
-    normal = -(d.couplings.T * stick)[0, 0] / d.a
+    Q = _reduced(state, d)
+    stick = -sp.Matrix([[Q[1, 1], -Q[0, 1]], [-Q[1, 0], Q[0, 0]]]) * slip / (Q[0, 0] * Q[1, 1] - Q[0, 1] * Q[1, 0])
+    normal = -(state.exact(d.couplings).T * stick)[0, 0] / state.exact(d.a)
     inside = _in_cone(state, d, normal, stick)
     if inside is Sign.UNDECIDED:
         return LeastEnergy(undecided="whether the sticking impulse is in the friction cone is undecided")
@@ -134,10 +136,11 @@ def _in_wedge(state: State, d: Derivation, slip: sp.MatrixBase) -> LeastEnergy:
 
 def _in_cone(state: State, d: Derivation, normal: sp.Expr, r_t: sp.MatrixBase) -> Sign:
     """POSITIVE if an impulse that is not zero is in the friction cone, NEGATIVE if not."""
-    lifts = exact_sign(state.exact(normal)).sign
+    lifts = exact_sign(normal).sign
     if lifts in (Sign.NEGATIVE, Sign.ZERO):
         return Sign.NEGATIVE
-    sides = [exact_sign(state.exact(x)).sign for x in d.scene.friction.membership(r_t / normal)]  # type: ignore[union-attr]
+    inside = d.scene.friction.membership(r_t / normal)  # type: ignore[union-attr]
+    sides = [exact_sign(state.exact(x)).sign for x in inside]
     if Sign.NEGATIVE in sides:
         return Sign.NEGATIVE
     return Sign.UNDECIDED if Sign.UNDECIDED in (lifts, *sides) else Sign.POSITIVE
@@ -152,7 +155,7 @@ def _better(state: State, d: Derivation, slip: sp.MatrixBase, found: list[LeastE
     if len(jumps) < 2:
         return jumps[0] if jumps else LeastEnergy()
     first, second = (-(slip.T * sp.Matrix(f.impulse[1:]))[0, 0] for f in jumps)  # type: ignore[index]
-    difference = exact_sign(state.exact(first - second))
+    difference = exact_sign(first - second)
     if difference.sign in (Sign.UNDECIDED, Sign.ZERO):
         return LeastEnergy(undecided="which of the two edges of the wedge is nearer is undecided")
     return jumps[0] if difference.sign is Sign.POSITIVE else jumps[1]

@@ -17,37 +17,37 @@ def wedge(state: State, d: Derivation) -> tuple[sp.MatrixBase, sp.MatrixBase] | 
     velocity lie between these rays. None where a sign at a polygon's vertex is undecided."""
     friction = d.scene.friction
     if isinstance(friction, Disc | Ellipse):
-        return _conic(d, friction)
+        return _conic(state, d, friction)
     assert isinstance(friction, Polygon)
     return _polygon(state, d, friction)
 
 
-def _conic(d: Derivation, friction: Disc | Ellipse) -> tuple[sp.MatrixBase, sp.MatrixBase]:
+def _conic(state: State, d: Derivation, friction: Disc | Ellipse) -> tuple[sp.MatrixBase, sp.MatrixBase]:
     """sigma = (-a c +- sqrt(|c|^2 - a^2) c_perp)/|c|^2 with c = E^T b on the unit circle; E keeps the orientation."""
-    c = friction.map.T * d.couplings
+    a, E = state.exact(d.a), state.exact(friction.map)
+    c = E.T * state.exact(d.couplings)
     across = sp.Matrix([-c[1], c[0]])
     squared = (c.T * c)[0, 0]
-    half = sp.sqrt(squared - d.a**2)
+    half = sp.sqrt(squared - a**2)
     # -c is the wedge's middle; c_perp is clockwise of it
-    first, second = (friction.map * (-d.a * c + sign * half * across) / squared for sign in (1, -1))
+    first, second = (E * (-a * c + sign * half * across) / squared for sign in (1, -1))
     return first, second
 
 
 def _polygon(state: State, d: Derivation, friction: Polygon) -> tuple[sp.MatrixBase, sp.MatrixBase] | None:
-    n = len(friction.vertices)
-    compliances = [d.edge_compliance(i + 1) for i in range(n)]
-    signs = [exact_sign(state.exact(p)).sign for p in compliances]
+    n, corners = len(friction.vertices), [state.exact(sp.Matrix(v)) for v in friction.vertices]
+    compliances = [state.exact(d.edge_compliance(i + 1)) for i in range(n)]
+    signs = [exact_sign(p).sign for p in compliances]
     if Sign.UNDECIDED in signs:
         return None
     inside = [sign is Sign.NEGATIVE for sign in signs]
     enters = next(i for i in range(n) if not inside[i] and inside[(i + 1) % n])
     leaves = next(i for i in range(n) if inside[i] and not inside[(i + 1) % n])
-    return _crossing(friction, compliances, enters), _crossing(friction, compliances, leaves)
+    return _crossing(corners, compliances, enters), _crossing(corners, compliances, leaves)
 
 
-def _crossing(friction: Polygon, compliances: list[sp.Expr], i: int) -> sp.MatrixBase:
+def _crossing(corners: list[sp.MatrixBase], compliances: list[sp.Expr], i: int) -> sp.MatrixBase:
     """Where a + b.s vanishes on the edge from vertex i to the next."""
     j = (i + 1) % len(compliances)
-    first, second = sp.Matrix(friction.vertices[i]), sp.Matrix(friction.vertices[j])
-    p, q = compliances[i], compliances[j]
+    first, second, p, q = corners[i], corners[j], compliances[i], compliances[j]
     return (first * q - second * p) / (q - p)
