@@ -21,7 +21,7 @@ from painleve.sets import Segment
 
 SOME = [("spatial_rod", s) for s in ("sliding", "paradox", "oblique", "critical", "critical_oblique", "double_zero")]
 SOME += [("spatial_rod_ellipse", s) for s in ("oblique", "tilted")] + [("square_rod", "oblique")]
-RESOLVED = 1e-4  # relative: at gamma = 0 the supremum may lie in a layer whose thickness is eps^2
+RESOLVED = 1e-3  # relative: at gamma = 0 the supremum may lie in a layer whose thickness is eps^2
 
 
 def sampled(limit: LimitSet, eps: float, samples: int) -> float:
@@ -114,7 +114,7 @@ def evolved(limit: LimitSet, eps: float) -> float:
         return -distance_to(limit, result) / eps
 
     bounds = [(-1.2, 1.2)] * (2 * d)
-    found = differential_evolution(lost, bounds, seed=1, popsize=20, maxiter=600, tol=1e-12, polish=False)
+    found = differential_evolution(lost, bounds, seed=1, popsize=12, maxiter=250, tol=1e-12, polish=False)
     return -float(found.fun)
 
 

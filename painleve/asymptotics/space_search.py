@@ -1,8 +1,9 @@
 """The search for the farthest member with friction in space: ascents from the best places of a sample on every chart.
 
 Each ascent is sequential quadratic programming (scipy's SLSQP) with gradients by central differences, which a compiled
-batch makes cheap; then a cloud of points that shrinks about the best place, which crosses kinks of S that the ascent
-takes for smooth. It is a search: a maximum whose basin holds none of the starts is missed, and nothing shows that.
+batch makes cheap; then clouds of points that shrink about the best places, which cross kinks of S that an ascent takes
+for smooth, and ascents from there. It is a search: a maximum whose basin holds none of the starts is missed, and
+nothing shows that.
 """
 
 from __future__ import annotations
@@ -20,12 +21,15 @@ __all__ = ["SpaceFound", "search_in_space"]
 DIFFERENCE = 1e-6
 MOST_STEPS = 100
 CLOUD, ROUNDS, WIDEST = 256, 48, 1e-2  # points a round, rounds, and the first radius
+POLISHED, POLISHES = 3, 4  # the best ascents of a chart, and rounds for each
+SETTLED = 1e-9  # relative: a round that adds less is the last
 TOLERANCE = 1e-12  # of eps: by what a condition may be missed; the member is moved inside
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SpaceFound:
-    """The best place of a search: dist/eps, where (in units of eps), on which chart, and what the cloud added to it."""
+    """The best place of a search: dist/eps, where (in units of eps), on which chart, and what refinement added to the
+    first ascent's."""
 
     value: float
     x: np.ndarray
@@ -45,10 +49,24 @@ def _search(chart: Chart, count: int) -> SpaceFound | None:
     tops = [_ascend(chart, z) for z in starts.T]
     if not tops:
         return None
-    value, z = max(tops, key=lambda top: top[0])
-    better, z = _cloud(chart, value, z)
+    tops.sort(key=lambda top: -top[0])
+    ends = [_polished(chart, *top) for top in tops[:POLISHED]]
+    value, z, gain = max(ends, key=lambda end: end[0])
     x, dv = chart.place(z[:, None])
-    return SpaceFound(value=better, x=x[:, 0], dv=dv[:, 0], chart=chart.name, error=better - value)
+    return SpaceFound(value=value, x=x[:, 0], dv=dv[:, 0], chart=chart.name, error=gain)
+
+
+def _polished(chart: Chart, value: float, z: np.ndarray) -> tuple[float, np.ndarray, float]:
+    """(value, place, what was added): clouds and ascents in turn, as long as they add something."""
+    first = value
+    for _ in range(POLISHES):
+        better, place = _cloud(chart, value, z)
+        better, place = max((better, place), _ascend(chart, place), key=lambda end: end[0])
+        settled = better - value <= SETTLED * better
+        value, z = better, place
+        if settled:
+            break
+    return value, z, value - first
 
 
 def _ascend(chart: Chart, start: np.ndarray) -> tuple[float, np.ndarray]:
