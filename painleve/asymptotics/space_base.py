@@ -30,14 +30,14 @@ def space_base(limit: LimitSet, bits: int) -> SpaceBase | PolygonBase:
     state, d = limit.state, derive(limit.state.scene)
     if isinstance(d.scene.friction, Polygon):
         return _polygon_base(limit, bits)
-    E = _map(state, d)
+    E, inverse = _map(state, d)
     number = partial(_number, state, bits)
-    slip = state.scene.tangents.T * sp.Matrix(state.scene.u)
-    b, turned = E.T * d.couplings, E.T * slip
-    stick_n, stick = _stick(d, slip)
-    stick = E.adjugate() * stick / E.det()
-    jump = E.adjugate() * sp.Matrix(limit.tangential) / E.det()
-    after = turned + E.T * (d.couplings * limit.multiplier + d.compliance * sp.Matrix(limit.tangential))
+    # Numbers first: of matrices of formulas a determinant may take minutes.
+    slip, couplings, compliance = _slip(state), state.exact(d.couplings), state.exact(d.compliance)
+    b, turned = E.T * couplings, E.T * slip
+    stick_n, stick = _stick(state, d, slip)
+    stick, jump = inverse * stick, inverse * sp.Matrix(limit.tangential)
+    after = turned + E.T * (couplings * limit.multiplier + compliance * sp.Matrix(limit.tangential))
     size = limit.multiplier if limit.kind != "point" else sp.Integer(1)
     return SpaceBase(
         stick_n=number(stick_n), stick_1=number(stick[0]), stick_2=number(stick[1]),
@@ -48,28 +48,41 @@ def space_base(limit: LimitSet, bits: int) -> SpaceBase | PolygonBase:
     )  # fmt: skip
 
 
-def _map(state: State, d: Derivation) -> sp.MatrixBase:
-    """E of the section E times the unit disc."""
-    E = d.scene.friction.map  # type: ignore[union-attr]
-    if exact_sign(state.exact(E.det())).sign is not Sign.POSITIVE:
+def _slip(state: State) -> sp.MatrixBase:
+    return state.exact(state.scene.tangents).T * sp.Matrix(state.u)
+
+
+def _map(state: State, d: Derivation) -> tuple[sp.MatrixBase, sp.MatrixBase]:
+    """E of the section E times the unit disc, and its inverse."""
+    E = state.exact(d.scene.friction.map)  # type: ignore[union-attr]
+    if exact_sign(_determinant(E)).sign is not Sign.POSITIVE:
         raise InputError(f"state {state.label}: a coefficient of friction vanishes; the friction section must have an "
                          "area: give positive coefficients")  # fmt: skip
-    return E
+    return E, _inverse(E)
 
 
-def _stick(d: Derivation, slip: sp.MatrixBase) -> tuple[sp.Expr, sp.MatrixBase]:
+def _stick(state: State, d: Derivation, slip: sp.MatrixBase) -> tuple[sp.Expr, sp.MatrixBase]:
     """-G^-1 (0, slip): what stops the tip, whether or not it is in the cone."""
-    Q = d.compliance - d.couplings * d.couplings.T / d.a
-    tangential = -Q.adjugate() * slip / Q.det()
-    return -(d.couplings.T * tangential)[0, 0] / d.a, tangential
+    a, b = state.exact(d.a), state.exact(d.couplings)
+    tangential = -_inverse(state.exact(d.compliance) - b * b.T / a) * slip
+    return -(b.T * tangential)[0, 0] / a, tangential
+
+
+def _determinant(A: sp.MatrixBase) -> sp.Expr:
+    return A[0, 0] * A[1, 1] - A[0, 1] * A[1, 0]
+
+
+def _inverse(A: sp.MatrixBase) -> sp.MatrixBase:
+    """Of a 2 x 2 matrix, without the simplifications of sympy's own."""
+    return sp.Matrix([[A[1, 1], -A[0, 1]], [-A[1, 0], A[0, 0]]]) / _determinant(A)
 
 
 def _polygon_base(limit: LimitSet, bits: int) -> PolygonBase:
     state, d = limit.state, derive(limit.state.scene)
     number = partial(_number, state, bits)
-    slip, jump = state.scene.tangents.T * sp.Matrix(state.scene.u), sp.Matrix(limit.tangential)
-    stick_n, stick = _stick(d, slip)
-    after = slip + d.couplings * limit.multiplier + d.compliance * jump
+    slip, jump = _slip(state), sp.Matrix(limit.tangential)
+    stick_n, stick = _stick(state, d, slip)
+    after = slip + state.exact(d.couplings) * limit.multiplier + state.exact(d.compliance) * jump
     first, second, x_first, x_second = _edge_of_jump(limit, number)
     return PolygonBase(
         stick_n=number(stick_n), stick_1=number(stick[0]), stick_2=number(stick[1]),
