@@ -6,8 +6,10 @@ import sys
 from pathlib import Path
 
 import pytest
+import sympy as sp
 from command_line import assert_refused, run_json
 from planar_scenes import SCENE_NAMES
+from scene_files import TEMPLATE
 
 from painleve.cli import main
 from painleve.mechanics.library import load_scene
@@ -133,6 +135,43 @@ def test_bad_input_gives_one_line_on_stderr_status_2_and_no_file(words, capsys, 
 def test_the_error_for_a_state_off_the_constraint_says_by_how_much(capsys):
     main(["classify", "slender_rod", "--state", "theta=atan(2)", "y=1"])
     assert f"{2 / math.sqrt(5) - 1:.6g}" in capsys.readouterr().err
+
+
+def test_a_scene_without_named_states_is_asked_for_its_keys_alone(capsys, tmp_path, monkeypatch):
+    (tmp_path / "my_rod.toml").write_text(TEMPLATE[: TEMPLATE.index("[states.")], encoding="utf-8")
+    line = assert_refused(["classify", "my_rod.toml"], capsys, tmp_path, monkeypatch)
+    assert line == "painleve: --state is needed: theta=EXPR slip=EXPR omega=EXPR\n"
+
+
+def test_degrees_are_pointed_out_and_a_full_turn_is_not(capsys):
+    assert main(["classify", "slender_rod", "--state", "theta=60°"]) == 2
+    assert "60*pi/180" in capsys.readouterr().err
+    assert main(["classify", "slender_rod", "--state", "theta=60"]) == 0
+    assert capsys.readouterr().err.startswith("painleve: note: theta = 60 is in radians")
+    assert main(["classify", "slender_rod", "--state", "theta=2*pi - 1"]) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_the_text_of_the_rate_names_the_scene_the_state_and_what_c_is(capsys):
+    assert main(["rate", "slender_rod", "--state", "paradox"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "slender_rod, paradox: d_H(A, A_eps) = C eps + o(eps) with A = {u-, u_tilde}"
+    exact = sp.sqrt(sp.sqrt(105) / 10 + sp.Rational(221, 120))
+    assert float(lines[1].split()[1].rstrip(",")) == pytest.approx(float(exact), rel=1e-13)
+    assert lines[2] == f"  closed form  {exact}"
+
+
+def test_a_sweep_says_of_a_point_that_failed_why(tmp_path, capsys):
+    words = ["sweep", "slender_rod", "--state", "paradox", "--eps", "1e-2", "--samples", "100", "--over", "mu=2,-2"]
+    assert main([*words, "-o", str(tmp_path / "x.h5")]) == 0
+    assert "paradox mu=-2: failed: scene slender_rod: parameter mu = -2 must be" in capsys.readouterr().out
+
+
+def test_listing_the_studies_imports_none_of_them():
+    code = "import sys, painleve.cli as cli; cli.main(['study']); print([m for m in sys.modules if 'study_' in m])"
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "Theorem 1, branch by branch" in answer.stdout
+    assert answer.stdout.splitlines()[-1] == "[]"
 
 
 COMMANDS = [

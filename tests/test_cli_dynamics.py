@@ -99,6 +99,13 @@ def test_ensemble_lists_every_outcome_and_the_fractions_add_up(capsys):
     assert run_json(capsys, *words, "--threads", "1") == answer
 
 
+def test_the_text_of_ensemble_names_the_scene_the_state_and_what_its_numbers_are(capsys):
+    assert main(["ensemble", *SLIDING, *SHORT, "--count", "20", "--spread", "0.5"]) == 0
+    first, second = capsys.readouterr().out.splitlines()
+    assert first.startswith("slender_rod, sliding: 20 trajectories; ")
+    assert "1.0000 of them; 95% interval of the probability [0.8389, 1.0000]" in second
+
+
 def test_an_ensemble_without_jumps_has_no_jump_time(capsys):
     answer = run_json(capsys, "ensemble", *SLIDING, *SHORT, "--count", "20", "--spread", "0.5")
     assert answer["jump_time"] is None

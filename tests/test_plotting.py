@@ -93,6 +93,13 @@ def test_every_known_bound_is_drawn_at_its_value(datasets: dict[str, xr.Dataset]
         np.testing.assert_array_equal(drawn["$e(A, A_\\varepsilon)$, upper bound (sample)"], one["excess_A_Aeps_upper"])
 
 
+def test_bounds_are_labelled_by_the_method_that_found_them(datasets: dict[str, xr.Dataset]) -> None:
+    axis = next(panels(draw(datasets["distances"].assign_attrs(method="certify"))))
+    labels = [str(line.get_label()) for line in axis.get_lines()]
+    assert "$e(A_\\varepsilon, A)$, lower bound (certify)" in labels
+    assert not any("sample" in label or "METHOD" in label for label in labels)
+
+
 @pytest.mark.parametrize("tiny", [0.0, 1e-93])
 def test_a_bound_that_is_zero_but_for_rounding_does_not_flatten_the_others(
     tiny: float, datasets: dict[str, xr.Dataset]

@@ -157,6 +157,12 @@ def test_numbers_are_rounded_from_enough_digits_that_cancellation_does_not_show(
     assert str(state.number(sine - sp.sqrt(1 - sp.cos(state.q[2]) ** 2))) == "0.0"
 
 
+def test_a_state_shows_itself_in_one_short_line_and_so_does_what_holds_it():
+    state = make_state(load_scene("slender_rod"), "critical")
+    assert repr(state) == "State('slender_rod', 'critical')"
+    assert repr(state.scene) == "Scene('slender_rod')"
+
+
 # --- wrong states ----------------------------------------------------------------------------------------------------
 
 PARADOX = "paradox"

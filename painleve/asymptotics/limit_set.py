@@ -114,7 +114,7 @@ def _projected(state: State) -> LimitSet:
     if least.impulse is None:
         return _limit(state, "point", gamma, edge, None, "u_tilde = u-: the slip is not in the destabilising sense")
     if gamma.sign is Sign.NEGATIVE:
-        reason = f"gamma < 0: stay at u- or jump to u_tilde, where the tip {least.after}"
+        reason = f"gamma < 0: stay at u- or jump to u_tilde, where the contact point {least.after}"
         return _limit(state, "pair", gamma, edge, least.impulse, reason, least.after)
     reason = "gamma = 0: every velocity between u- and u_tilde"
     return _limit(state, "segment", gamma, edge, least.impulse, reason, least.after)

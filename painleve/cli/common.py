@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from collections.abc import Callable, Sequence
+import sys
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from painleve.errors import InputError
@@ -69,15 +70,27 @@ def read_state(options: argparse.Namespace) -> State:
     names, keys, parameters = read_state_words(options, scene)
     if len(names) > 1:
         raise InputError(f"--state: {' and '.join(names)} are two names; give one, then KEY=EXPR to change it")
-    return make_state(scene, names[0] if names else None, keys=keys, parameters=parameters)
+    state = make_state(scene, names[0] if names else None, keys=keys, parameters=parameters)
+    _note_degrees(scene, keys)
+    return state
+
+
+def _note_degrees(scene: Scene, given: Mapping[str, str]) -> None:
+    """One line on stderr for an angle beyond a full turn: allowed, and likely to be degrees."""
+    from painleve.mechanics.parse import parse_number
+
+    for key in scene.keys:
+        if key.unit == "rad" and key.name in given and abs(parse_number(given[key.name], where=key.name)) > 2 * math.pi:
+            print(f"painleve: note: {key.name} = {given[key.name]} is in radians, more than a full turn; "
+                  "degrees are written such as 60*pi/180", file=sys.stderr)  # fmt: skip
 
 
 def read_state_words(options: argparse.Namespace, scene: Scene) -> tuple[list[str], dict[str, str], dict[str, str]]:
     """(names of states, state keys, parameters) as they were given."""
     if not options.state:
-        known = ", ".join(s.name for s in scene.states)
+        known = f"one of {', '.join(s.name for s in scene.states)}" if scene.states else ""
         keys = " ".join(f"{k.name}=EXPR" for k in scene.keys)
-        raise InputError(f"--state is needed: one of {known}, or {keys}")
+        raise InputError(f"--state is needed: {', or '.join(way for way in (known, keys) if way)}")
     names = [word for word in options.state if "=" not in word]
     given = assignments([word for word in options.state if "=" in word], "--state")
     return names, given, assignments(options.parameters, "--set")

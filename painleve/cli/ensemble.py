@@ -41,11 +41,12 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print_json(facts)
         return 0
-    print(f"{options.scene}: {facts['count']} trajectories; {facts['ending']}")
+    print(f"{found.start.scene.name}, {found.start.label}: {facts['count']} trajectories; {facts['ending']}")
     for outcome, number in found.counts.items():
         if number:
             low, high = found.interval(outcome)
-            print(f"  {outcome.label:12} {found.fraction(outcome):.4f}, 95% interval [{low:.4f}, {high:.4f}]")
+            print(f"  {outcome.label:12} {found.fraction(outcome):.4f} of them; "
+                  f"95% interval of the probability [{low:.4f}, {high:.4f}]")  # fmt: skip
     if found.jump_time is not None:
         print("  jump time    min {:.9g}, median {:.9g}, max {:.9g} s".format(*found.jump_time))
     return 0

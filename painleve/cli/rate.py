@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import argparse
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from painleve.cli.common import add_command, add_json, add_scene, add_state, print_json, read_state
+
+if TYPE_CHECKING:
+    from painleve.asymptotics.rates import Rate
 
 
 def register(commands: Any) -> None:
@@ -23,10 +26,19 @@ def run(options: argparse.Namespace) -> int:
     from painleve.asymptotics.rates import rate
 
     found = rate(limit_set(read_state(options)))
-    facts = found.as_dict()
     if options.json:
-        print_json(facts)
-        return 0
-    for name, value in facts.items():
-        print(f"  {name:12} {value}")
+        print_json(found.as_dict())
+    else:
+        _print(found)
     return 0
+
+
+def _print(found: Rate) -> None:
+    state = found.limit.state
+    print(f"{state.scene.name}, {state.label}: {found.sentence}")
+    print(f"  C            {found.C:.15g}, in the scene's units; a maximum found by search, exact to rounding")
+    if found.closed_form is not None:
+        print(f"  closed form  {found.closed_form}")
+    print(f"  attained     in the part {found.part!r}, to first order at")
+    for name, values in (("dq", found.dq), ("dv", found.dv)):
+        print(f"  {name + '/eps':12} ({', '.join(f'{x:.9g}' for x in values)})")

@@ -66,3 +66,4 @@ def _print(trajectory: Trajectory) -> None:
     if margins is not None:
         for name, margin in margins.as_dict().items():
             print(f"  Proposition 1, {name}: worst margin {margin:.3g} at step {margins.steps()[name]}")
+        print("  (a margin is positive where the statement fails; rounding alone gives some 1e-16)")

@@ -67,8 +67,11 @@ def run(options: argparse.Namespace) -> int:
         print_json({"file": str(target), "dimensions": sizes, "points": points, "verdicts": verdicts})
         return 0
     for verdict in verdicts:
-        print("{point}: {branch}; {status}: {reason}".format(**verdict))
-    print(f"{target}: {points} points; `painleve plot {target}` draws them")
+        print("{point}: {branch}; {status}: {reason}".format(**verdict) if verdict["branch"] != "not_run"
+              else "{point}: failed: {failure}".format(**verdict))  # fmt: skip
+        if verdict["failure"] and verdict["branch"] != "not_run":
+            print("  failed at an eps: {failure}".format(**verdict))
+    print(f"{target}: {points} {'point' if points == 1 else 'points'}; `painleve plot {target}` draws them")
     return 0
 
 
@@ -77,12 +80,18 @@ def _verdicts(dataset: xr.Dataset) -> Iterator[dict[str, str]]:
     names = {name: dataset[name].attrs["flag_meanings"].split() for name in ("theorem_branch", "verdict")}
     swept = dataset["verdict"].dims
     for index in np.ndindex(*dataset["verdict"].shape):
-        spot = dataset[["theorem_branch", "verdict", "verdict_reason"]].isel(dict(zip(swept, index, strict=True)))
+        spot = dataset.isel(dict(zip(swept, index, strict=True)))
         places = [str(spot["state"].item())]
         places += [f"{name}={spot[f'{name}_exact'].item()}" for name in swept if name != "state"]
         branch, status = (names[name][int(spot[name])] for name in ("theorem_branch", "verdict"))
         reason = str(spot["verdict_reason"].item())
-        yield {"point": " ".join(places), "branch": branch, "status": status, "reason": reason}
+        yield {"point": " ".join(places), "branch": branch, "status": status, "reason": reason,
+               "failure": _failure(spot)}  # fmt: skip
+
+
+def _failure(spot: xr.Dataset) -> str:
+    """Why a point failed, the first of them; empty where none did."""
+    return next((str(reason) for reason in spot["outcome_reason"].values if reason), "")
 
 
 def _over(words: list[str]) -> dict[str, list[str]]:

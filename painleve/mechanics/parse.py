@@ -191,6 +191,8 @@ def _split(text: str) -> list[_Word]:
 def _about_character(character: str) -> str:
     if character == "^":
         return "write ** for a power, not ^"
+    if character == "°":
+        return "angles are in radians: write 60*pi/180 for 60°"
     return f"the character {character!r} has no meaning in a formula"
 
 

@@ -132,6 +132,10 @@ class Scene:
     file: str = ""
     text: str = ""
 
+    def __repr__(self) -> str:
+        """The name alone: states and results hold their scene, and would drown in its formulas."""
+        return f"Scene({self.name!r})"
+
     @property
     def q(self) -> tuple[sp.Symbol, ...]:
         return tuple(c.symbol for c in self.coordinates)

@@ -32,6 +32,10 @@ class State:
     q: tuple[sp.Expr, ...]
     u: tuple[sp.Expr, ...]
 
+    def __repr__(self) -> str:
+        """How it was given, without the formulas of its coordinates, which can be long."""
+        return f"State({self.scene.name!r}, {self.label!r})"
+
     @property
     def substitution(self) -> dict[sp.Symbol, sp.Expr]:
         parameters = {p.symbol: self.parameters[p.name] for p in self.scene.parameters}

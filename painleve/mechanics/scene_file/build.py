@@ -46,7 +46,8 @@ def scene_of_text(name: str, text: str) -> Scene:
     nodes = nodes_of(rows)
     if nodes > MOST_NODES:
         raise InputError(f"{name}: the derived formulas have {nodes} numbers, names and operations, more than "
-                         f"{MOST_NODES}; shorten the formulas of the inertia or use fewer coordinates")  # fmt: skip
+                         f"{MOST_NODES}; shorten the formulas of the inertia (it is sparse in coordinates of "
+                         "the centre of mass) or use fewer coordinates")  # fmt: skip
     return scene
 
 
