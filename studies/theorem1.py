@@ -11,7 +11,7 @@ Where gamma > 0 nothing is indeterminate, and A_eps tends to {u-}.
 
 Command:  painleve study theorem1 [--quick]
 Expected: the exact branch of each state, every verdict `consistent`, every slope of e(A_eps, A) within 0.05 of 1, or of
-          1/2 on the rods in space where gamma = 0 and the jump ends in slip (see painleve.asymptotics.space_rates);
+          1/2 on the rods in space where gamma = 0 and the jump ends in slip (see painleve.asymptotics.space.rates);
           e(A, A_eps) near 0.418 (worn tip) and 0.5 (arm) in the isolated branch. At `double_zero` and at both states
           `approached` a sample hardly ever slips, its upper bound on e(A, A_eps) stays large, and only the witnesses
           show that the excess vanishes.

@@ -9,7 +9,7 @@ import numpy as np
 import sympy as sp
 
 from painleve.core.codes import Branch
-from painleve.core.coulomb import COLUMNS, MOST_SOLUTIONS, coulomb_disc
+from painleve.core.space.coulomb import COLUMNS, MOST_SOLUTIONS, coulomb_disc
 from painleve.mechanics.friction import Section
 from painleve.mechanics.scene import Coordinate, Scene, make_scene
 

@@ -18,9 +18,9 @@ from coulomb_contacts import (
 import painleve
 from painleve.asymptotics.coulomb.one_step import CoulombSolutions, Enumeration, coulomb_solutions
 from painleve.core.codes import Branch
-from painleve.core.conic_law import disc_impulse
-from painleve.core.coulomb import COLUMNS, MOST_SOLUTIONS, coulomb_disc
 from painleve.core.law import planar_impulse
+from painleve.core.space.conic_law import disc_impulse
+from painleve.core.space.coulomb import COLUMNS, MOST_SOLUTIONS, coulomb_disc
 from painleve.errors import InputError
 from painleve.mechanics.friction import Disc, Ellipse, Polygon, Segment
 from painleve.mechanics.signs import Sign

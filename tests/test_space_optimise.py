@@ -11,9 +11,9 @@ from painleve.asymptotics.limit_set import LimitSet, limit_set
 from painleve.asymptotics.local import make_local_problem
 from painleve.asymptotics.optimise import OptimiseOptions, optimise_distance
 from painleve.asymptotics.sample import KINDS, SampleOptions, sample_distance
-from painleve.asymptotics.space_ball import SpaceBall
-from painleve.asymptotics.space_charts import Along, Sticking, Whole
-from painleve.asymptotics.space_rates import root_rate
+from painleve.asymptotics.space.ball import SpaceBall
+from painleve.asymptotics.space.charts import Along, Sticking, Whole
+from painleve.asymptotics.space.rates import root_rate
 from painleve.core.codes import Branch
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state

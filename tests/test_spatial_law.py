@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from reference_spatial_law import exact_disc_impulse
 
 from painleve.core.codes import Branch
-from painleve.core.conic_law import disc_impulse
 from painleve.core.law import planar_impulse
-from painleve.core.polygon_law import polygon_impulse
+from painleve.core.space.conic_law import disc_impulse
+from painleve.core.space.polygon_law import polygon_impulse
 
 EPS = float(np.finfo(float).eps)
 # p/a = 1 - eccentricity: circle, ellipses, parabola, hyperbolas, huge friction

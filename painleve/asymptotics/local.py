@@ -17,9 +17,9 @@ import numpy as np
 import sympy as sp
 
 from painleve.asymptotics.limit_set import LimitSet
-from painleve.asymptotics.space_base import space_base
-from painleve.core.polygon_offset import PolygonBase
-from painleve.core.space_offset import SpaceBase
+from painleve.asymptotics.space.base import space_base
+from painleve.core.space.offset import SpaceBase
+from painleve.core.space.polygon_offset import PolygonBase
 from painleve.core.taylor import Polynomials, monomial_block, polynomial_block, sparse_polynomials
 from painleve.kernels.compiled import Kernels, make_kernels
 from painleve.mechanics.balls import ball
@@ -54,8 +54,8 @@ class LocalProblem:
     """The state and its limit set as the kernels want them; arrays are float64, rounded from exact values.
 
     base: the rows at q; u: u-; direction: unit vector from u- to u_tilde (0 without a jump), length: its distance;
-    impulse: the sticking impulse at the base, in space all of painleve.core.space_offset.SpaceBase or of
-    painleve.core.polygon_offset.PolygonBase; multiplier, critical_edge: see painleve.core.offset.planar_split;
+    impulse: the sticking impulse at the base, in space all of painleve.core.space.offset.SpaceBase or of
+    painleve.core.space.polygon_offset.PolygonBase; multiplier, critical_edge: see painleve.core.offset.planar_split;
     carried: norm of dg with respect to the carried coordinates, and its direction in q.
     """
 

@@ -14,7 +14,7 @@ import flint
 import numpy as np
 
 from painleve.asymptotics.local import BITS, LocalProblem
-from painleve.asymptotics.space_member import Contact, conic_impulse, polygon_impulse
+from painleve.asymptotics.space.member import Contact, conic_impulse, polygon_impulse
 from painleve.core.codes import Branch
 from painleve.mechanics.balls import ball, make_ball_function
 

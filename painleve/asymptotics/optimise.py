@@ -23,7 +23,7 @@ from painleve.asymptotics.local import BITS, Arithmetic, LocalProblem, make_loca
 from painleve.asymptotics.member import Member, base_balls, make_member, row_balls
 from painleve.asymptotics.sample import KINDS, check_eps
 from painleve.asymptotics.search import SLIPS, Found, Search
-from painleve.asymptotics.space_optimise import optimise_in_space
+from painleve.asymptotics.space.optimise import optimise_in_space
 from painleve.asymptotics.witness import find_family
 from painleve.core.branch_excess import REACH
 from painleve.core.codes import Branch

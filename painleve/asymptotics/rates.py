@@ -1,5 +1,5 @@
 """The constant C in d_H = C eps + o(eps), from first derivatives (the project's notes, section 9); k <= 1.
-In space (k = 2) the rate at gamma = 0 is the root of eps: see painleve.asymptotics.space_rates.
+In space (k = 2) the rate at gamma = 0 is the root of eps: see painleve.asymptotics.space.rates.
 
 With dq = eps xi and dv = eps eta every row enters by its value and its gradient at q, known to dozens of digits. In the
 limit each branch of the law leaves a linear problem on the two unit balls, subject to grad g . xi >= 0 (the coordinates
@@ -38,7 +38,7 @@ from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.local import LocalProblem, make_local_problem
 from painleve.asymptotics.sample import KINDS
 from painleve.asymptotics.search import SLIPS, Found, Search
-from painleve.asymptotics.space_rates import root_rate
+from painleve.asymptotics.space.rates import root_rate
 from painleve.core.codes import Branch
 from painleve.errors import InputError
 from painleve.mechanics.derive import derive

@@ -20,7 +20,7 @@ __all__ = ["Branch", "Classification", "Evidence", "Status", "Verdict", "classif
 SHADOW = 1e-3  # how near, in units of eps, the witnesses of eq. (10) are asked to come
 ROUNDING = 1e-12  # relative, of half the segment's length as it is compared with bounds
 # Of an excess that tends to zero. In the plane the slope is 1; in space it is 1 or, where gamma = 0 and the jump ends
-# in slip, 1/2 (painleve.asymptotics.space_rates): measured slopes scatter about it and must not fail for that.
+# in slip, 1/2 (painleve.asymptotics.space.rates): measured slopes scatter about it and must not fail for that.
 LEAST_SLOPE, LEAST_SLOPE_OF_ROOT = 0.5, 0.4
 RATES_PART = 0.75  # half-way between the two
 

@@ -18,7 +18,7 @@ import numpy as np
 from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.local import BITS, LocalProblem, make_local_problem
 from painleve.asymptotics.member import Member, base_balls, distance_to_point, make_member, row_balls
-from painleve.asymptotics.space_witness import path_bound, path_members
+from painleve.asymptotics.space.witness import path_bound, path_members
 from painleve.core.codes import Branch
 from painleve.errors import InputError
 
@@ -48,7 +48,7 @@ class Family:
 
     `bound`: upper bound on the distance of any point of A to these members, hence on e(A, A_eps). In the plane
     lambda_bar -> S(q_eps, v(lambda_bar)) is affine, and the distance between two affine images is convex: the two ends
-    decide. In space the path is curved (painleve.asymptotics.space_witness).
+    decide. In space the path is curved (painleve.asymptotics.space.witness).
     """
 
     first: Member

@@ -6,7 +6,7 @@ those that are stored are in the scene's own tangents, r_t = E r' with the secti
 
 __all__ = ["CONIC", "CONSTANTS", "IMPORTS", "POLYGON", "SPACE_SCHEMES"]
 
-IMPORTS = "from painleve.core.space_steps import {problem}, {edge}, contact_velocity, kind_of_change"
+IMPORTS = "from painleve.core.space.steps import {problem}, {edge}, contact_velocity, kind_of_change"
 CONSTANTS = "{vertices}SECTION = {section}  # the first row of E, row by row"
 CONIC = {"problem": "conic_problem", "edge": "conic_edge", "of": "rows, D"}
 POLYGON = {"problem": "polygon_problem", "edge": "polygon_edge", "of": "rows, D, VERTICES"}
@@ -44,6 +44,6 @@ def change_at(h, since, q, u, p, rows, acceleration, v, v_n, r, branch):
 
 @jit
 def count_solutions(scheme, tolerance, h, rows, v):
-    """One: the law is a projection (what solves Coulomb's law beside it: painleve.core.coulomb)."""
+    """One: the law is a projection (what solves Coulomb's law beside it: painleve.core.space.coulomb)."""
     return 1
 '''

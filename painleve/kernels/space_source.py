@@ -10,10 +10,10 @@ from painleve.mechanics.scene import Scene
 
 __all__ = ["law_call", "space_imports", "space_lines"]
 
-CONIC_IMPORTS = """from painleve.core.space_law import conic_law_from_rows
-from painleve.core.space_offset import conic_split"""
-POLYGON_IMPORTS = """from painleve.core.polygon_offset import polygon_split
-from painleve.core.space_law import polygon_law_from_rows"""
+CONIC_IMPORTS = """from painleve.core.space.law import conic_law_from_rows
+from painleve.core.space.offset import conic_split"""
+POLYGON_IMPORTS = """from painleve.core.space.polygon_offset import polygon_split
+from painleve.core.space.law import polygon_law_from_rows"""
 IMPULSES = (("Yn", "n"), ("Y1", "1"), ("Y2", "2"))
 
 
@@ -34,7 +34,7 @@ def law_call(scene: Scene) -> str | None:
 
 
 def space_lines(scene: Scene, names: Names, axes: Sequence[str]) -> list[str]:
-    """From v_n and `hit` to the code, tau and z of a sample (painleve.core.space_offset)."""
+    """From v_n and `hit` to the code, tau and z of a sample (painleve.core.space.offset)."""
     lines = [f"dt_{k} = {velocity_difference(names, f'H{k}', axes)}" for k in (1, 2)]
     lines += _polygon_call(scene.friction, names) if isinstance(scene.friction, Polygon) else _conic_call(names)
     for j, x in enumerate(axes):

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from painleve.asymptotics.coulomb.problem import problem_at
-from painleve.core.two_laws import compare_laws
+from painleve.core.space.two_laws import compare_laws
 from painleve.errors import InputError
 from painleve.mechanics.derive import derive
 from painleve.mechanics.friction import Disc

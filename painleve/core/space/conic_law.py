@@ -16,8 +16,15 @@ from math import hypot, inf, sqrt
 
 from painleve._jit import jit
 from painleve.core.codes import Branch
-from painleve.core.quartic import bracketed_root
-from painleve.core.tangent_plane import ROUNDING, is_definite, made_definite, scales, sticking_point, tangent_energy
+from painleve.core.space.quartic import bracketed_root
+from painleve.core.space.tangent_plane import (
+    ROUNDING,
+    is_definite,
+    made_definite,
+    scales,
+    sticking_point,
+    tangent_energy,
+)
 
 FREE, STICK, SLIP = int(Branch.FREE), int(Branch.STICK), int(Branch.SLIP)
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize
 
-from painleve.asymptotics.space_ball import SpaceBall
-from painleve.asymptotics.space_charts import Chart, charts_of
+from painleve.asymptotics.space.ball import SpaceBall
+from painleve.asymptotics.space.charts import Chart, charts_of
 
 __all__ = ["SpaceFound", "search_in_space"]
 

@@ -3,9 +3,9 @@
 import numpy as np
 
 from painleve._jit import jit
-from painleve.core.conic_law import disc_impulse
 from painleve.core.law import FREE
-from painleve.core.polygon_law import polygon_impulse
+from painleve.core.space.conic_law import disc_impulse
+from painleve.core.space.polygon_law import polygon_impulse
 
 
 @jit

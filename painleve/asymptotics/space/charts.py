@@ -18,9 +18,9 @@ from typing import Protocol
 
 import numpy as np
 
-from painleve.asymptotics.space_ball import SpaceBall
+from painleve.asymptotics.space.ball import SpaceBall
 from painleve.core.codes import Branch
-from painleve.core.polygon_offset import PolygonBase
+from painleve.core.space.polygon_offset import PolygonBase
 from painleve.mechanics.friction import Polygon
 
 __all__ = ["Along", "Chart", "Sticking", "Whole", "charts_of"]

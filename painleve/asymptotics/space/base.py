@@ -9,8 +9,8 @@ import flint
 import sympy as sp
 
 from painleve.asymptotics.limit_set import LimitSet
-from painleve.core.polygon_offset import PolygonBase
-from painleve.core.space_offset import SpaceBase
+from painleve.core.space.offset import SpaceBase
+from painleve.core.space.polygon_offset import PolygonBase
 from painleve.errors import InputError
 from painleve.mechanics.balls import ball
 from painleve.mechanics.derive import Derivation, derive
@@ -22,8 +22,9 @@ __all__ = ["space_base"]
 
 
 def space_base(limit: LimitSet, bits: int) -> SpaceBase | PolygonBase:
-    """See painleve.core.space_offset.SpaceBase and painleve.core.polygon_offset.PolygonBase; the numbers are rounded
-    from balls of that many bits.
+    """See painleve.core.space.offset.SpaceBase and painleve.core.space.polygon_offset.PolygonBase.
+
+    The numbers are rounded from balls of that many bits.
 
     Raises InputError where the section has no area at q: there the tip's sticking impulse is not one of the disc's.
     """

@@ -2,7 +2,7 @@
 
 In the plane S is piecewise linear in v over one configuration, and the farthest member of each branch is found globally
 (painleve.asymptotics.optimise). In space slips are on a conic, and the farthest member is sought in all variables at
-once (painleve.asymptotics.space_search): what comes out is a bound by a true member, and an estimate that holds if the
+once (painleve.asymptotics.space.search): what comes out is a bound by a true member, and an estimate that holds if the
 search did not miss the basin of the supremum. The estimated error says how well the maximum found is resolved, and
 nothing about others.
 """
@@ -18,8 +18,8 @@ from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.local import Arithmetic, make_local_problem
 from painleve.asymptotics.member import Member, make_member
 from painleve.asymptotics.sample import KINDS, SampleOptions, sample_distance
-from painleve.asymptotics.space_ball import SpaceBall
-from painleve.asymptotics.space_search import SpaceFound, search_in_space
+from painleve.asymptotics.space.ball import SpaceBall
+from painleve.asymptotics.space.search import SpaceFound, search_in_space
 from painleve.asymptotics.witness import find_family
 from painleve.sets import Bounds
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from painleve._jit import jit
 from painleve.core.codes import Branch
-from painleve.core.conic_law import disc_impulse
 from painleve.core.motion_codes import Change
-from painleve.core.polygon_law import polygon_impulse
+from painleve.core.space.conic_law import disc_impulse
+from painleve.core.space.polygon_law import polygon_impulse
 from painleve.core.steps import LOST_SPEED, SLIP_FACTOR, STUCK_FACTOR, is_tangential
 
 STICK = int(Branch.STICK)

@@ -29,7 +29,7 @@ import numpy as np
 
 from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.local import LocalProblem, make_local_problem
-from painleve.core.space_offset import SpaceBase
+from painleve.core.space.offset import SpaceBase
 from painleve.errors import InputError
 
 __all__ = ["Root", "root_rate"]

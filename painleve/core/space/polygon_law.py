@@ -10,7 +10,7 @@ from math import inf
 
 from painleve._jit import jit
 from painleve.core.codes import Branch
-from painleve.core.tangent_plane import is_definite, made_definite, scales, sticking_point, tangent_energy
+from painleve.core.space.tangent_plane import is_definite, made_definite, scales, sticking_point, tangent_energy
 
 FREE, STICK, SLIP = int(Branch.FREE), int(Branch.STICK), int(Branch.SLIP)
 

@@ -1,6 +1,6 @@
 """S(q0 + dq, u- + dv) relative to the limit set in space with a polygon, without cancellation.
 
-The impulse is split as in painleve.core.space_offset. On an edge of the section r = x_i (1, s_i) + x_j (1, s_j), and
+The impulse is split as in painleve.core.space.offset. On an edge of the section r = x_i (1, s_i) + x_j (1, s_j), and
 two linear equations determine x: the normal velocity vanishes, p_i x_i + p_j x_j = nu, and the tip's velocity c is
 orthogonal to T = p_j s_i - p_i s_j, the direction in which r_t may move. Where the jump's impulse is on that edge it
 solves them at the base state, so that x minus its coefficients solves them with small right-hand sides. On the vertex
@@ -13,8 +13,8 @@ import numpy as np
 
 from painleve._jit import jit
 from painleve.core.law import FREE, STICK
-from painleve.core.polygon_law import nearest_edge, sticks
-from painleve.core.space_offset import stick_change
+from painleve.core.space.offset import stick_change
+from painleve.core.space.polygon_law import nearest_edge, sticks
 
 
 class PolygonBase(NamedTuple):
@@ -48,7 +48,7 @@ def polygon_split(
     """(branch, tau, e_n, e_1, e_2) at an offset state.
 
     p, s_1, s_2: of the vertices, with their differences from the base state, as tuples; `critical`: the vertex (from 1)
-    on which gamma = 0 at the base state if there is a jump, else 0; else as for painleve.core.space_offset.conic_split.
+    on which gamma = 0 at the base state if there is a jump, else 0; else as for painleve.core.space.offset.conic_split.
     """
     if not hit:
         return FREE, 0.0, 0.0, 0.0, 0.0

@@ -6,8 +6,8 @@ import numpy as np
 
 from painleve._jit import jit
 from painleve.core.codes import Branch
-from painleve.core.conic_law import disc_impulse
-from painleve.core.coulomb import COLUMNS, MOST_SOLUTIONS, coulomb_disc
+from painleve.core.space.conic_law import disc_impulse
+from painleve.core.space.coulomb import COLUMNS, MOST_SOLUTIONS, coulomb_disc
 
 STICK = int(Branch.STICK)
 

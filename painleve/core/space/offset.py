@@ -3,9 +3,9 @@
 As in painleve.core.offset every impulse is split as r = tau r_jump + e, r_jump the impulse of the jump u- -> u_tilde at
 the base state, so that S = u- + tau (u_tilde - u-) + z with z of the size of S - A. Friction is that of the unit disc.
 
-The optimum is found in the frame of b, where painleve.core.conic_law gives its component across b with a small relative
-error, if the sticking impulse and the slip have theirs: b x (stick) and b x (slip) are known exactly at the base state
-and change by small numbers. That is what is needed
+The optimum is found in the frame of b, where `conic_law` gives its component across b with a small relative error,
+if the sticking impulse and the slip have theirs: b x (stick) and b x (slip) are known exactly at the base state and
+change by small numbers. That is what is needed
 
 - where gamma = 0 at the base state: r_jump opposes b there, tau = r_n / (that of the jump), and e is r_n times the turn
   of r_t/r_n away from -b_0/|b_0|;
@@ -19,8 +19,8 @@ import math
 from typing import NamedTuple
 
 from painleve._jit import jit
-from painleve.core.conic_law import aligned
 from painleve.core.law import FREE, STICK
+from painleve.core.space.conic_law import aligned
 
 NEAR = 0.3  # rad, and relative: how near to the edge of the wedge the second split is used
 NEWTON_STEPS = 3  # from a start that is right to rounding

@@ -1,0 +1,1 @@
+"""What friction in space asks of the methods, where S is not linear in v: members, witnesses, rates, optimisation."""
