@@ -78,7 +78,7 @@ def certify_distance(limit: LimitSet, eps: float, options: CertifyOptions | None
         raise InputError(f"state {limit.state.label}: no distance to a limit set that is undecided: {limit.reason}")
     if limit.state.scene.friction_dimension == 2:
         raise InputError(f"certify: scene {limit.state.scene.name} has friction in space, which this method does not "
-                         "search; use the method sample")  # fmt: skip
+                         "search; use the methods sample or optimise")  # fmt: skip
     problem = make_local_problem(limit)
     near = neighbours(limit.state, limit.edge) if limit.critical else None
     apart = near is not None and near.kind is Neighbourhood.ISOLATED and slips_nowhere(problem, eps)
