@@ -70,7 +70,7 @@ class Rate:
 
     @cached_property
     def closed_form(self) -> sp.Expr | None:
-        """C as an exact expression, where one is known; worked out when asked for, which takes a second or two."""
+        """C as an exact expression, where known; worked out when asked for: seconds, a minute for some bodies."""
         if self.part == "free":
             return sp.Integer(1)
         return _closed_form(self.limit) if self.part == "sticking" and self.limit.kind == "pair" else None
