@@ -150,6 +150,7 @@ def test_a_frictionless_scene_has_gamma_a_and_no_tangential_quantities():
     assert d.edge_plus == d.a
     assert (d.b, d.C, d.edge_minus, d.critical_friction) == (None, None, None, None)
     assert d.tangent_response.shape == (2, 0)
+    assert d.delassus == sp.Matrix([[d.a]])
 
 
 def test_an_asymmetric_section_takes_the_lesser_of_its_two_ends():

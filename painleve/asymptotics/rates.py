@@ -49,6 +49,7 @@ from painleve.mechanics.signs import Sign, exact_sign
 __all__ = ["Rate", "rate"]
 
 TINY = 1e-100  # in the place of eps: second orders vanish beside first ones, and nothing under- or overflows
+LONG = 200  # operations of W^T M^-1 W beyond which a closed form takes minutes and fills the screen
 VANISHING = 1e-60  # relative; gradients known to 320 bits are either zero, by an identity, or far above this
 
 
@@ -70,7 +71,7 @@ class Rate:
 
     @cached_property
     def closed_form(self) -> sp.Expr | None:
-        """C as an exact expression, where known; worked out when asked for: seconds, a minute for some bodies."""
+        """C as an exact expression, where one is known and short; worked out when asked for, which takes seconds."""
         if self.part == "free":
             return sp.Integer(1)
         return _closed_form(self.limit) if self.part == "sticking" and self.limit.kind == "pair" else None
@@ -221,7 +222,7 @@ def _sentence(limit: LimitSet, isolated: bool) -> str:
 def _closed_form(limit: LimitSet) -> sp.Expr | None:
     """C of the sticking branch where it has a closed form (see above), exact; None elsewhere."""
     state, scene, d = limit.state, limit.state.scene, derive(limit.state.scene)
-    if scene.dimension != 3 or len(d.shape) != 1:
+    if scene.dimension != 3 or len(d.shape) != 1 or sum(x.count_ops() for x in d.delassus) > LONG:
         return None
     theta, u = scene.q[d.shape[0]], sp.Matrix(scene.u)
     if exact_sign(state.exact((sp.diff(d.normal, theta).T * u)[0, 0])).sign is not Sign.ZERO:

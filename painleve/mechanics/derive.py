@@ -55,7 +55,8 @@ class Derivation:
     @property
     def delassus(self) -> sp.ImmutableMatrix:
         """W^T M^-1 W, (1 + k) x (1 + k)."""
-        return sp.ImmutableMatrix([[sp.Matrix([[self.a]]), self.couplings.T], [self.couplings, self.compliance]])
+        normal = sp.Matrix([[self.a]]).row_join(self.couplings.T)
+        return sp.ImmutableMatrix(normal.col_join(self.couplings.row_join(self.compliance)))
 
 
     def edge_direction(self, edge: int) -> sp.ImmutableMatrix:
