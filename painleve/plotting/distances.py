@@ -73,6 +73,8 @@ def draw_distances(dataset: xr.Dataset) -> Figure:
         _draw_panel(axis, case, x)
     words = "radius $\\varepsilon$" if x == "eps" else dataset[x].attrs["long_name"].removesuffix(" (swept)")
     label_outside(axes, columns, with_unit(words, dataset[x]), with_unit("distance", dataset["half_jump"]))
+    if dataset.attrs.get("scene"):
+        figure.suptitle(spoken(dataset.attrs["scene"]), fontsize=9)
     legend_below(figure, axes, columns=3)
     return figure
 
