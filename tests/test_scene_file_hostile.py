@@ -19,6 +19,7 @@ from painleve.mechanics.scene import Scene
 from painleve.mechanics.scene_file import build
 from painleve.mechanics.scene_file.document import MAX_BYTES
 from painleve.mechanics.scene_file.lines import field_lines, words_of
+from painleve.mechanics.scene_file.work import TooMuchWork, limited_calls
 
 
 def refusal(text: str) -> str:
@@ -300,3 +301,38 @@ def test_a_byte_order_mark_and_windows_line_ends_are_no_fault(tmp_path):
     path = tmp_path / "windows.toml"
     path.write_bytes(b"\xef\xbb\xbf" + TEMPLATE.replace("\n", "\r\n").encode())
     assert load_scene(path).inertia == read(TEMPLATE).inertia
+
+
+class Finalised:
+    def __del__(self) -> None:
+        """Called when the object goes: whatever is raised here is dropped."""
+
+
+def work() -> None:
+    """One call."""
+
+
+def swallow_in_a_finaliser(reached: list[str]) -> None:
+    thing = Finalised()
+    work()
+    work()
+    del thing  # one call too many, where nothing can be raised
+    reached.append("after")
+    work()
+
+
+def swallow_in_a_generator(reached: list[str]) -> None:
+    half_way = (work() for _ in range(2))
+    next(half_way)  # two calls: its own and work's
+    del half_way  # one call too many, where nothing can be raised
+    reached.append("after")
+    work()
+
+
+@pytest.mark.parametrize("swallow", [swallow_in_a_finaliser, swallow_in_a_generator])
+def test_the_budget_of_calls_holds_where_python_drops_the_refusal(swallow):
+    """In a finaliser nothing can be raised: Python drops it, and the hook that raised it."""
+    reached: list[str] = []
+    with pytest.raises(TooMuchWork), limited_calls(3):
+        swallow(reached)
+    assert reached == ["after"]

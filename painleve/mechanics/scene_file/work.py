@@ -74,11 +74,21 @@ def limited_calls(most: int) -> Iterator[None]:
             if left < 0:
                 raise TooMuchWork
 
+    def rearm(swallowed: sys.UnraisableHookArgs) -> None:
+        """A finaliser cannot raise: Python drops what the hook raised there, and the hook with it."""
+        if swallowed.exc_type is TooMuchWork:
+            sys.setprofile(hook)
+        else:
+            previous(swallowed)
+
     if sys.getprofile() is not None:
         yield
         return
+    previous = sys.unraisablehook
+    sys.unraisablehook = rearm
     sys.setprofile(hook)
     try:
         yield
     finally:
         sys.setprofile(None)
+        sys.unraisablehook = previous
