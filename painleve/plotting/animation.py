@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from painleve.errors import InputError
 from painleve.plotting.style import STYLE, WIDTH
 from painleve.plotting.trajectory import draw_body, frame_body, spaced
+from painleve.plotting.whole_file import written_aside
 from painleve.store import check_writable
 
 __all__ = ["FRAMES", "animate"]
@@ -36,16 +37,8 @@ def animate(dataset: xr.Dataset, path: str | Path, progress: Callable[[int], Non
     if dataset.attrs.get("kind") != "trajectory" or "outline_x" not in dataset:
         raise InputError("no animation for this dataset: it needs a trajectory of a scene that has an outline")
     aside = target.with_name(f".{target.stem}.{os.getpid()}.part.gif")  # Pillow chooses the format by the suffix
-    try:
-        with mpl.rc_context(STYLE):
-            _write(dataset, aside, progress)
-        os.replace(aside, target)
-    except OSError as error:
-        raise InputError(
-            f"output {target}: cannot be written ({error.strerror or error}); give another place"
-        ) from error
-    finally:
-        aside.unlink(missing_ok=True)
+    with written_aside(target, aside), mpl.rc_context(STYLE):
+        _write(dataset, aside, progress)
     return target
 
 

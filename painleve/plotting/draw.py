@@ -24,6 +24,7 @@ from painleve.plotting.reference import draw_reference
 from painleve.plotting.regimes import draw_regimes
 from painleve.plotting.style import STYLE
 from painleve.plotting.trajectory import draw_trajectory
+from painleve.plotting.whole_file import written_aside
 from painleve.plotting.work_precision import draw_work_precision
 from painleve.store import check_writable
 
@@ -77,14 +78,6 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
     if form not in WITHOUT_DATE:
         raise InputError(f"output {target}: cannot draw {form or 'a file without a suffix'}; use .pdf, .png or .svg")
     aside = target.with_name(f".{target.name}.{os.getpid()}.part")
-    try:
-        with mpl.rc_context({**STYLE, "svg.hashsalt": "painleve"}):
-            figure.savefig(aside, format=form, metadata=WITHOUT_DATE[form])
-        os.replace(aside, target)
-    except OSError as error:
-        raise InputError(
-            f"output {target}: cannot be written ({error.strerror or error}); give another place"
-        ) from error
-    finally:
-        aside.unlink(missing_ok=True)
+    with written_aside(target, aside), mpl.rc_context({**STYLE, "svg.hashsalt": "painleve"}):
+        figure.savefig(aside, format=form, metadata=WITHOUT_DATE[form])
     return target
