@@ -19,7 +19,7 @@ from painleve.mechanics.friction import Polygon, Segment
 from painleve.mechanics.signs import Sign, Signed, exact_sign
 from painleve.mechanics.state import State
 
-__all__ = ["LeastEnergy", "least_edge", "least_energy"]
+__all__ = ["LeastEnergy", "inverse_of_two", "least_edge", "least_energy", "sticking_impulse"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -120,9 +120,7 @@ def _in_wedge(state: State, d: Derivation, slip: sp.MatrixBase) -> LeastEnergy:
     """gamma < 0 in space."""
     if all(exact_sign(x).sign is Sign.ZERO for x in slip):
         return LeastEnergy()
-    Q = _reduced(state, d)
-    stick = -sp.Matrix([[Q[1, 1], -Q[0, 1]], [-Q[1, 0], Q[0, 0]]]) * slip / (Q[0, 0] * Q[1, 1] - Q[0, 1] * Q[1, 0])
-    normal = -(state.exact(d.couplings).T * stick)[0, 0] / state.exact(d.a)
+    normal, stick = sticking_impulse(state, d, slip)
     inside = _in_cone(state, d, normal, stick)
     if inside is Sign.UNDECIDED:
         return LeastEnergy(undecided="whether the sticking impulse is in the friction cone is undecided")
@@ -132,6 +130,17 @@ def _in_wedge(state: State, d: Derivation, slip: sp.MatrixBase) -> LeastEnergy:
     if rays is None:
         return LeastEnergy(undecided="the sign of the normal compliance at a vertex of the polygon is undecided")
     return _better(state, d, slip, [_on_ray(state, d, slip, s) for s in rays])
+
+
+def sticking_impulse(state: State, d: Derivation, slip: sp.MatrixBase) -> tuple[sp.Expr, sp.MatrixBase]:
+    """-G^-1 (0, slip), exactly: what stops a tip in space, whether or not it is in the cone."""
+    stick = -inverse_of_two(_reduced(state, d)) * slip
+    return -(state.exact(d.couplings).T * stick)[0, 0] / state.exact(d.a), stick
+
+
+def inverse_of_two(A: sp.MatrixBase) -> sp.MatrixBase:
+    """The inverse of a 2 x 2 matrix, without the simplifications of sympy's own, which take minutes."""
+    return sp.Matrix([[A[1, 1], -A[0, 1]], [-A[1, 0], A[0, 0]]]) / (A[0, 0] * A[1, 1] - A[0, 1] * A[1, 0])
 
 
 def _in_cone(state: State, d: Derivation, normal: sp.Expr, r_t: sp.MatrixBase) -> Sign:

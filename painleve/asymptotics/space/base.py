@@ -8,6 +8,7 @@ from functools import partial
 import flint
 import sympy as sp
 
+from painleve.asymptotics.least_energy import inverse_of_two, sticking_impulse
 from painleve.asymptotics.limit_set import LimitSet
 from painleve.core.space.offset import SpaceBase
 from painleve.core.space.polygon_offset import PolygonBase
@@ -36,7 +37,7 @@ def space_base(limit: LimitSet, bits: int) -> SpaceBase | PolygonBase:
     # Numbers first: of matrices of formulas a determinant may take minutes.
     slip, couplings, compliance = _slip(state), state.exact(d.couplings), state.exact(d.compliance)
     b, turned = E.T * couplings, E.T * slip
-    stick_n, stick = _stick(state, d, slip)
+    stick_n, stick = sticking_impulse(state, d, slip)
     stick, jump = inverse * stick, inverse * sp.Matrix(limit.tangential)
     after = turned + E.T * (couplings * limit.multiplier + compliance * sp.Matrix(limit.tangential))
     size = limit.multiplier if limit.kind != "point" else sp.Integer(1)
@@ -56,33 +57,17 @@ def _slip(state: State) -> sp.MatrixBase:
 def _map(state: State, d: Derivation) -> tuple[sp.MatrixBase, sp.MatrixBase]:
     """E of the section E times the unit disc, and its inverse."""
     E = state.exact(d.scene.friction.map)  # type: ignore[union-attr]
-    if exact_sign(_determinant(E)).sign is not Sign.POSITIVE:
+    if exact_sign(E[0, 0] * E[1, 1] - E[0, 1] * E[1, 0]).sign is not Sign.POSITIVE:
         raise InputError(f"state {state.label}: a coefficient of friction vanishes; the friction section must have an "
                          "area: give positive coefficients")  # fmt: skip
-    return E, _inverse(E)
-
-
-def _stick(state: State, d: Derivation, slip: sp.MatrixBase) -> tuple[sp.Expr, sp.MatrixBase]:
-    """-G^-1 (0, slip): what stops the tip, whether or not it is in the cone."""
-    a, b = state.exact(d.a), state.exact(d.couplings)
-    tangential = -_inverse(state.exact(d.compliance) - b * b.T / a) * slip
-    return -(b.T * tangential)[0, 0] / a, tangential
-
-
-def _determinant(A: sp.MatrixBase) -> sp.Expr:
-    return A[0, 0] * A[1, 1] - A[0, 1] * A[1, 0]
-
-
-def _inverse(A: sp.MatrixBase) -> sp.MatrixBase:
-    """Of a 2 x 2 matrix, without the simplifications of sympy's own."""
-    return sp.Matrix([[A[1, 1], -A[0, 1]], [-A[1, 0], A[0, 0]]]) / _determinant(A)
+    return E, inverse_of_two(E)
 
 
 def _polygon_base(limit: LimitSet, bits: int) -> PolygonBase:
     state, d = limit.state, derive(limit.state.scene)
     number = partial(_number, state, bits)
     slip, jump = _slip(state), sp.Matrix(limit.tangential)
-    stick_n, stick = _stick(state, d, slip)
+    stick_n, stick = sticking_impulse(state, d, slip)
     after = slip + state.exact(d.couplings) * limit.multiplier + state.exact(d.compliance) * jump
     first, second, x_first, x_second = _edge_of_jump(limit, number)
     return PolygonBase(
