@@ -31,9 +31,17 @@ __all__ = ["NOT_RUN", "PROVENANCE", "check_schema", "check_writable", "flags", "
 
 NOT_RUN = 0  # the code of a point that nobody computed, so that an outer merge can fill codes and keep them integers
 PROVENANCE = (
-    "painleve_version", "git_commit", "scene", "scene_digest", "seed", "platform", "python_version",
-    "library_versions", "command", "created",
-)  # fmt: skip
+    "painleve_version",
+    "git_commit",
+    "scene",
+    "scene_digest",
+    "seed",
+    "platform",
+    "python_version",
+    "library_versions",
+    "command",
+    "created",
+)
 LIBRARIES = ("numpy", "scipy", "sympy", "numba", "python-flint", "xarray", "h5netcdf", "h5py")
 COMPRESSION = {"zlib": True, "complevel": 1, "shuffle": True}
 

@@ -110,10 +110,19 @@ def measure(
         found = Run(value=math.nan, evaluations=0, sentence=str(error))
         first, warm, outcome = clock() - start, math.nan, Outcome.FAILED
     return Record(
-        problem=problem, method=method, setting=setting, value=found.value, reference=reference,
-        error=abs(found.value - reference) / reference, proved=found.proved / reference, evaluations=found.evaluations,
-        first_seconds=first, seconds=warm, outcome=outcome, sentence=found.sentence,
-    )  # fmt: skip
+        problem=problem,
+        method=method,
+        setting=setting,
+        value=found.value,
+        reference=reference,
+        error=abs(found.value - reference) / reference,
+        proved=found.proved / reference,
+        evaluations=found.evaluations,
+        first_seconds=first,
+        seconds=warm,
+        outcome=outcome,
+        sentence=found.sentence,
+    )
 
 
 def _warm_runs(run: Callable[[], object], repetitions: int, patience: float, clock: Callable[[], float]) -> float:

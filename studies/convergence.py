@@ -40,11 +40,27 @@ from painleve.sweep.text_table import text_table
 from painleve.sweep.variables import OUTCOMES
 
 QUICK = Effort(
-    most=5000, levels=4, phases=3, tolerances=(1e-4, 1e-6, 1e-8, 1e-10), stiffnesses=(1e3, 2.5e3, 6.3e3),
-    instants=10_000, patience=0.0,
-)  # fmt: skip
-COLUMNS = ("motion", "theorem", "scheme", "order observed", "expected", "stated", "verdict", "runs", "failed",
-           "least error", "its wall time s")  # fmt: skip
+    most=5000,
+    levels=4,
+    phases=3,
+    tolerances=(1e-4, 1e-6, 1e-8, 1e-10),
+    stiffnesses=(1e3, 2.5e3, 6.3e3),
+    instants=10_000,
+    patience=0.0,
+)
+COLUMNS = (
+    "motion",
+    "theorem",
+    "scheme",
+    "order observed",
+    "expected",
+    "stated",
+    "verdict",
+    "runs",
+    "failed",
+    "least error",
+    "its wall time s",
+)
 
 
 def run(output: Path, *, quick: bool = False, seed: int = 0) -> StudyResult:
@@ -105,12 +121,20 @@ def _known(value: float) -> float | None:
 def _table(rows: list[dict[str, Any]], motions: list[dict[str, Any]]) -> str:
     cells = [
         (
-            str(row["motion"]), str(row["theorem"]).rsplit(" ", 1)[-1], str(row["scheme"]), _order(row),
-            f"{row['expected_order']:g}", f"{row['stated_order']:g}", str(row["verdict"]), str(row["runs"]),
-            str(row["failed"]), _short(row["least_error"]), _short(row["seconds"]),
+            str(row["motion"]),
+            str(row["theorem"]).rsplit(" ", 1)[-1],
+            str(row["scheme"]),
+            _order(row),
+            f"{row['expected_order']:g}",
+            f"{row['stated_order']:g}",
+            str(row["verdict"]),
+            str(row["runs"]),
+            str(row["failed"]),
+            _short(row["least_error"]),
+            _short(row["seconds"]),
         )
         for row in rows
-    ]  # fmt: skip
+    ]
     notes = ["Orders are estimates with their standard errors; errors are upper bounds on the distance of graphs."]
     notes += [
         f"  {m['motion']}: {m['description']}; {m['situation']}; reference: {m['reference']}, resolved to about "

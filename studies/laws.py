@@ -41,9 +41,17 @@ DRAWN = (-0.01, 0.0)
 LARGEST_FRICTION = 4.0
 APART = 1e-9  # beyond the rounding of both laws, below every distance that the claims speak of
 COLUMNS = (
-    "state", "v_n", "1 solution", "2", "3", "largest distance", "at gamma > 0", "parted", "edges missed",
+    "state",
+    "v_n",
+    "1 solution",
+    "2",
+    "3",
+    "largest distance",
+    "at gamma > 0",
+    "parted",
+    "edges missed",
     "exact checks",
-)  # fmt: skip
+)
 
 
 def run(output: Path, *, quick: bool = False, seed: int = 0) -> StudyResult:
@@ -95,8 +103,9 @@ def _missed(chosen: xr.Dataset) -> int | None:
 
 def _agrees(chosen: xr.Dataset, state: State, generator: np.random.Generator) -> bool:
     """Whether exact arithmetic counts as many solutions at a random point of the grid, read as decimals."""
-    point = chosen.isel(friction=generator.integers(chosen.sizes["friction"]),
-                        direction=generator.integers(chosen.sizes["direction"]))  # fmt: skip
+    point = chosen.isel(
+        friction=generator.integers(chosen.sizes["friction"]), direction=generator.integers(chosen.sizes["direction"])
+    )
     angle = float(point["direction"])
     found = _exactly(state, angle, float(point["approach"]), float(point["friction"]))
     return found == int(point["solutions"])
@@ -115,11 +124,18 @@ def _table(rows: list[dict[str, object]]) -> str:
     for row in rows:
         shares = [f"{100.0 * row['shares'].get(str(n), 0.0):.2f} %" for n in (1, 2, 3)]
         missed = "-" if row["edges_missed"] is None else str(row["edges_missed"])
-        lines.append((
-            row["state"], f"{row['approach']:g}", *shares, f"{row['largest']:.3f}",
-            f"{row['largest_at_positive_gamma']:.3f}", f"{100.0 * row['parted']:.1f} %", missed,
-            f"{row['agree']} of {row['checks']}",
-        ))  # fmt: skip
+        lines.append(
+            (
+                row["state"],
+                f"{row['approach']:g}",
+                *shares,
+                f"{row['largest']:.3f}",
+                f"{row['largest_at_positive_gamma']:.3f}",
+                f"{100.0 * row['parted']:.1f} %",
+                missed,
+                f"{row['agree']} of {row['checks']}",
+            )
+        )
     notes = [
         "Shares of the rectangle |psi| <= pi, 0 < mu < 4. The slip has the speed 1, v_n is measured in it. Distances",
         "are of law (7) from the nearest solution of Coulomb's law, in the scene's units; parted: beyond rounding.",

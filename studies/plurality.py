@@ -95,9 +95,13 @@ def run(output: Path, *, quick: bool = False, seed: int = 0) -> StudyResult:
         ]
     )
     data = {
-        "choices": _choice_rows(choices), "layer": _layer_rows(layers),
-        "instant": float(step_sizes["instant"]), "decades": decades, "cases": laws, "fits": fits,
-    }  # fmt: skip
+        "choices": _choice_rows(choices),
+        "layer": _layer_rows(layers),
+        "instant": float(step_sizes["instant"]),
+        "decades": decades,
+        "cases": laws,
+        "fits": fits,
+    }
     return StudyResult(table=table, files=tuple(files), data=data, status=_status(decades, fits))
 
 
@@ -138,9 +142,14 @@ def _strict(group: str, ratio: float, step: float, drift: float, *, alpha: float
     """The case of the strict test with this drift d at this step."""
     amplitude = singular_point(find_friction(ratio, alpha=alpha), alpha=alpha).amplitude_of(step, drift)
     return JamCase(
-        group=group, contact="strict", ratio=ratio, step=step, amplitude=amplitude, alpha=alpha,
+        group=group,
+        contact="strict",
+        ratio=ratio,
+        step=step,
+        amplitude=amplitude,
+        alpha=alpha,
         **rest,  # type: ignore[arg-type]
-    )  # fmt: skip
+    )
 
 
 def _kept(
@@ -149,9 +158,15 @@ def _kept(
     """The case with the tip kept on the floor that has this drift d at this step."""
     point = singular_point(find_friction(ratio, alpha=alpha), alpha=alpha)
     return JamCase(
-        group=group, contact="kept", ratio=ratio, step=step, amplitude=point.kept_drift(step, 1.0) / drift,
-        alpha=alpha, length=length, **rest,  # type: ignore[arg-type]
-    )  # fmt: skip
+        group=group,
+        contact="kept",
+        ratio=ratio,
+        step=step,
+        amplitude=point.kept_drift(step, 1.0) / drift,
+        alpha=alpha,
+        length=length,
+        **rest,  # type: ignore[arg-type]
+    )
 
 
 def _runs(*, quick: bool) -> Iterator[SchemeRun]:
@@ -180,11 +195,15 @@ def _layer_table(dataset: xr.Dataset) -> str:
     lines = [("state", "eps/h", "jump (95 % interval)", "e(right velocities, A) >=", "e(A, right velocities) <=")]
     for row in _layer_rows(dataset):
         if row["step"] == h:
-            lines.append((
-                str(row["state"]), f"{row['ratio']:.3g}",
-                f"{row['fraction']:.3f} ({row['lower']:.3f}-{row['upper']:.3f})", f"{row['excess_from_A']:.2e}",
-                f"{row['excess_of_A']:.2e}",
-            ))  # fmt: skip
+            lines.append(
+                (
+                    str(row["state"]),
+                    f"{row['ratio']:.3g}",
+                    f"{row['fraction']:.3f} ({row['lower']:.3f}-{row['upper']:.3f})",
+                    f"{row['excess_from_A']:.2e}",
+                    f"{row['excess_of_A']:.2e}",
+                )
+            )
     return f"States with gamma < 0 known to eps, h = {h:g}, right velocity after 1.6 sqrt(h) s:\n" + _aligned(lines)
 
 
@@ -193,11 +212,14 @@ def _choice_rows(dataset: xr.Dataset) -> list[dict[str, object]]:
     labels = labels_of(dataset["choice"])
     return [
         {
-            "state": str(state), "run": str(run), "choice": str(labels[i, j]),
+            "state": str(state),
+            "run": str(run),
+            "choice": str(labels[i, j]),
             "time": float(dataset["time"].values[i, j]),
         }
-        for i, state in enumerate(dataset["state"].values) for j, run in enumerate(dataset["run"].values)
-    ]  # fmt: skip
+        for i, state in enumerate(dataset["state"].values)
+        for j, run in enumerate(dataset["run"].values)
+    ]
 
 
 def _choice_table(dataset: xr.Dataset) -> str:
@@ -223,11 +245,16 @@ def _decade_rows(dataset: xr.Dataset) -> Iterator[dict[str, object]]:
             one = dataset.isel(contact=i, window=j)
             lateness = max(abs(float(one[name]) - float(one["instant"])) for name in ("first", "last"))
             yield {
-                "contact": str(contact), "step": float(step), "decades": float(one["decades"]),
-                "count": int(one["count"]), "fraction": float(one["fraction"]),
-                "interval": [float(one["lower"]), float(one["upper"])], "map": float(one["local_map"]),
-                "median_delay": float(one["median"]) - float(one["instant"]), "largest_delay": lateness,
-            }  # fmt: skip
+                "contact": str(contact),
+                "step": float(step),
+                "decades": float(one["decades"]),
+                "count": int(one["count"]),
+                "fraction": float(one["fraction"]),
+                "interval": [float(one["lower"]), float(one["upper"])],
+                "map": float(one["local_map"]),
+                "median_delay": float(one["median"]) - float(one["instant"]),
+                "largest_delay": lateness,
+            }
 
 
 def _glocker_table(dataset: xr.Dataset, rows: list[dict[str, object]]) -> str:
@@ -236,10 +263,17 @@ def _glocker_table(dataset: xr.Dataset, rows: list[dict[str, object]]) -> str:
         if row["decades"] != 1.0:
             continue
         low, high = row["interval"]
-        lines.append((
-            str(row["contact"]), f"{row['step']:.0e}", f"{10 * row['step']:.0e}", str(row["count"]),
-            f"{row['fraction']:.3f} ({low:.3f}-{high:.3f})", f"{row['map']:.3f}", f"{row['largest_delay']:.1e}",
-        ))  # fmt: skip
+        lines.append(
+            (
+                str(row["contact"]),
+                f"{row['step']:.0e}",
+                f"{10 * row['step']:.0e}",
+                str(row["count"]),
+                f"{row['fraction']:.3f} ({low:.3f}-{high:.3f})",
+                f"{row['map']:.3f}",
+                f"{row['largest_delay']:.1e}",
+            )
+        )
     narrow = [r for r in rows if r["decades"] != 1.0 and r["contact"] == "strict"]
     span = [min(r["fraction"] for r in narrow), max(r["fraction"] for r in narrow)]
     head = (
@@ -254,8 +288,21 @@ def _law_rows(dataset: xr.Dataset) -> Iterator[dict[str, object]]:
     contacts = labels_of(dataset["contact"])
     for i in range(dataset.sizes["case"]):
         one = dataset.isel(case=i)
-        names = ("ratio", "alpha", "slip", "step", "drift", "neglected", "law", "local_map", "fraction", "lower",
-                 "upper", "count", "others")  # fmt: skip
+        names = (
+            "ratio",
+            "alpha",
+            "slip",
+            "step",
+            "drift",
+            "neglected",
+            "law",
+            "local_map",
+            "fraction",
+            "lower",
+            "upper",
+            "count",
+            "others",
+        )
         yield {"group": str(one["group"].item()), "contact": str(contacts[i]), **{n: float(one[n]) for n in names}}
 
 
@@ -264,12 +311,22 @@ def _law_table(rows: list[dict[str, object]]) -> str:
         ("tests", "contact", "r", "alpha", "slip", "h", "d", "beta/c", "count", "jam (95 % interval)", "map", "law")
     ]
     for row in rows:
-        lines.append((
-            str(row["group"]), str(row["contact"]), f"{row['ratio']:.2f}", f"{row['alpha']:g}", f"{row['slip']:g}",
-            f"{row['step']:.0e}", f"{row['drift']:.3f}", f"{row['neglected']:.0e}", f"{row['count']:.0f}",
-            f"{row['fraction']:.4f} ({row['lower']:.4f}-{row['upper']:.4f})", f"{row['local_map']:.4f}",
-            f"{row['law']:.4f}",
-        ))  # fmt: skip
+        lines.append(
+            (
+                str(row["group"]),
+                str(row["contact"]),
+                f"{row['ratio']:.2f}",
+                f"{row['alpha']:g}",
+                f"{row['slip']:g}",
+                f"{row['step']:.0e}",
+                f"{row['drift']:.3f}",
+                f"{row['neglected']:.0e}",
+                f"{row['count']:.0f}",
+                f"{row['fraction']:.4f} ({row['lower']:.4f}-{row['upper']:.4f})",
+                f"{row['local_map']:.4f}",
+                f"{row['law']:.4f}",
+            )
+        )
     head = (
         "The jam law. Derived: `law` (limit h -> 0) and `map` (finite h, without terms of relative size beta/c).\n"
         "Measured: `jam`, over step sizes and starts, with a 95 % interval from the scatter between starts."
@@ -287,10 +344,12 @@ def _fits(dataset: xr.Dataset) -> dict[str, dict[str, float]]:
         residual = (f - p)[inside]
         square = float((residual**2 * n[inside] / (p * (1.0 - p))[inside]).sum())
         found[contact] = {
-            "chi_square": square, "degrees": int(inside.sum()), "p_value": float(chi2.sf(square, inside.sum())),
+            "chi_square": square,
+            "degrees": int(inside.sum()),
+            "p_value": float(chi2.sf(square, inside.sum())),
             "largest_residual": float(np.abs(residual).max()),
             "jams_where_the_map_has_none": int(np.round((f * one["count"].values)[p == 0.0]).sum()),
-        }  # fmt: skip
+        }
     found["approach"] = {
         f"{c} {name}": _power(dataset, c, name) for c in ("strict", "kept") for name in ("fraction", "local_map")
     }

@@ -91,11 +91,19 @@ def _sources(found: Iterable[Reproduction]) -> str:
 
 def _row(r: Reproduction) -> dict[str, object]:
     return {
-        "id": r.fact.id, "statement": r.fact.statement, "published": r.fact.value, "found": str(r.found.value),
-        "difference": r.difference or None, "gap": r.found.gap, "status": r.status.value, "route": r.found.route,
-        "obstacle": r.found.obstacle or None, "basis": r.fact.basis.value, "source": r.fact.source.citation,
+        "id": r.fact.id,
+        "statement": r.fact.statement,
+        "published": r.fact.value,
+        "found": str(r.found.value),
+        "difference": r.difference or None,
+        "gap": r.found.gap,
+        "status": r.status.value,
+        "route": r.found.route,
+        "obstacle": r.found.obstacle or None,
+        "basis": r.fact.basis.value,
+        "source": r.fact.source.citation,
         "says": r.fact.says,
-    }  # fmt: skip
+    }
 
 
 def _status(found: Sequence[Reproduction]) -> str:

@@ -38,21 +38,33 @@ from painleve.sweep.work_precision import NAIVE, RUN_OUTCOMES, Effort, sweep_wor
 
 EPS = 1e-3
 STATES = (
-    ("slender_rod", "paradox"), ("slender_rod", "critical"), ("slender_rod", "double_zero"),
-    ("worn_tip_rod", "isolated"), ("two_link_arm", "isolated"),
-)  # fmt: skip
+    ("slender_rod", "paradox"),
+    ("slender_rod", "critical"),
+    ("slender_rod", "double_zero"),
+    ("worn_tip_rod", "isolated"),
+    ("two_link_arm", "isolated"),
+)
 QUICK_STATES = STATES[:4]
 EFFORT = Effort(
-    samples=(10**3, 10**4, 10**5, 10**6, 10**7), naive_samples=(10**3, 10**4, 10**5, 10**6),
+    samples=(10**3, 10**4, 10**5, 10**6, 10**7),
+    naive_samples=(10**3, 10**4, 10**5, 10**6),
     widths=(1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6),
-)  # fmt: skip
+)
 QUICK_EFFORT = Effort(
     samples=(10**3, 10**5), naive_samples=(10**3, 10**5), widths=(1e-1, 1e-3), reference_width=1e-5, repetitions=1
 )
 COLUMNS = (
-    "state", "method", "setting", "evaluations", "first call s", "warm s", "d_H as read", "relative error", "proved",
+    "state",
+    "method",
+    "setting",
+    "evaluations",
+    "first call s",
+    "warm s",
+    "d_H as read",
+    "relative error",
+    "proved",
     "outcome",
-)  # fmt: skip
+)
 RIVAL = "sample, kronecker"
 
 
@@ -73,9 +85,11 @@ def run(output: Path, *, quick: bool = False, seed: int = 0) -> StudyResult:
     files += [save_figure(figure, output / f"speed_accuracy.{suffix}") for suffix in ("pdf", "png")]
     rows, ratios = list(_rows(dataset)), list(_ratios(dataset))
     return StudyResult(
-        table=_table(dataset, rows, ratios), files=tuple(files), status=_status(rows),
+        table=_table(dataset, rows, ratios),
+        files=tuple(files),
+        status=_status(rows),
         data={"eps": EPS, "references": _references(dataset), "rows": rows, "kronecker_against_naive": ratios},
-    )  # fmt: skip
+    )
 
 
 def _rows(dataset: xr.Dataset) -> Iterator[dict[str, object]]:
@@ -85,9 +99,12 @@ def _rows(dataset: xr.Dataset) -> Iterator[dict[str, object]]:
             one = dataset.isel(state=i, run=j)
             numbers = ("setting", "evaluations", "first_seconds", "seconds", "value", "error", "proved")
             yield {
-                "state": str(state), "method": str(series), **{name: float(one[name]) for name in numbers},
-                "outcome": ("not_run", *RUN_OUTCOMES)[int(one["outcome"])], "sentence": str(one["sentence"].item()),
-            }  # fmt: skip
+                "state": str(state),
+                "method": str(series),
+                **{name: float(one[name]) for name in numbers},
+                "outcome": ("not_run", *RUN_OUTCOMES)[int(one["outcome"])],
+                "sentence": str(one["sentence"].item()),
+            }
 
 
 def _ratios(dataset: xr.Dataset) -> Iterator[dict[str, object]]:
@@ -114,12 +131,19 @@ def _references(dataset: xr.Dataset) -> list[dict[str, object]]:
 def _table(dataset: xr.Dataset, rows: list[dict[str, object]], ratios: list[dict[str, object]]) -> str:
     cells = [
         (
-            row["state"], row["method"], _short(row["setting"]), f"{row['evaluations']:.0f}",
-            f"{row['first_seconds']:.2g}", _short(row["seconds"]), _short(row["value"], 5), _short(row["error"]),
-            _short(row["proved"]), row["outcome"],
+            row["state"],
+            row["method"],
+            _short(row["setting"]),
+            f"{row['evaluations']:.0f}",
+            f"{row['first_seconds']:.2g}",
+            _short(row["seconds"]),
+            _short(row["value"], 5),
+            _short(row["error"]),
+            _short(row["proved"]),
+            row["outcome"],
         )
         for row in rows
-    ]  # fmt: skip
+    ]
     notes = ["Reference, proved:"]
     notes += [
         f"  {r['state']}: d_H = {r['d_H']:.9g} +- {r['half_width']:.1e}, relative {r['half_width'] / r['d_H']:.1e}"

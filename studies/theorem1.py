@@ -125,10 +125,19 @@ def _table(rows: list[dict[str, object]], eps: float) -> str:
         witnessed = Bounds.unknown() if row["witnessed_upper"] is None else Bounds.at_most(row["witnessed_upper"])
         slope = "-" if row["slope"] is None else f"{row['slope']:.3f}"
         found = "none" if witnessed.upper is None else _short(witnessed)
-        lines.append((
-            row["scene"], row["state"], row["branch"], slope, row["verdict"], _short(forward),
-            _short(backward) + (" *" if _misleading(row) else ""), found, f"{row['seconds']:.1f}",
-        ))  # fmt: skip
+        lines.append(
+            (
+                row["scene"],
+                row["state"],
+                row["branch"],
+                slope,
+                row["verdict"],
+                _short(forward),
+                _short(backward) + (" *" if _misleading(row) else ""),
+                found,
+                f"{row['seconds']:.1f}",
+            )
+        )
     widths = [max(len(line[j]) for line in lines) for j in range(len(COLUMNS))]
     text = ["  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in lines]
     text.insert(1, "  ".join("-" * width for width in widths))

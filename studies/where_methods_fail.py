@@ -43,9 +43,13 @@ from painleve.sweep.work_precision import RUN_OUTCOMES, Effort, sweep_work_preci
 
 HARD = ("slender_rod", "double_zero")
 STATES = (
-    ("slender_rod", "paradox"), ("slender_rod", "critical"), HARD, ("worn_tip_rod", "isolated"),
-    ("two_link_arm", "approached"), ("two_link_arm", "isolated"),
-)  # fmt: skip
+    ("slender_rod", "paradox"),
+    ("slender_rod", "critical"),
+    HARD,
+    ("worn_tip_rod", "isolated"),
+    ("two_link_arm", "approached"),
+    ("two_link_arm", "isolated"),
+)
 ESTIMATE, PROOF = 1e-2, 1e-3  # relative errors that serve a reader who wants a number, or a claim settled
 Progress = Callable[[str], None]
 
@@ -67,18 +71,31 @@ class Size:
 
 
 FULL = Size(
-    bound_eps=np.logspace(-1, -7, 13), bound_samples=(10**3, 10**5, 10**7), rounding_eps=np.logspace(-1, -14, 14),
-    members=100, rounding_samples=10**7, near_eps=np.logspace(-1, -8, 15), near_samples=200_000, guide_eps=(1e-3, 1e-9),
+    bound_eps=np.logspace(-1, -7, 13),
+    bound_samples=(10**3, 10**5, 10**7),
+    rounding_eps=np.logspace(-1, -14, 14),
+    members=100,
+    rounding_samples=10**7,
+    near_eps=np.logspace(-1, -8, 15),
+    near_samples=200_000,
+    guide_eps=(1e-3, 1e-9),
     states=STATES,
-    effort=Effort(samples=(10**4, 10**6), naive_samples=(10**5,), widths=(1e-1, PROOF), reference_width=1e-5,
-                  repetitions=1),
-)  # fmt: skip
+    effort=Effort(
+        samples=(10**4, 10**6), naive_samples=(10**5,), widths=(1e-1, PROOF), reference_width=1e-5, repetitions=1
+    ),
+)
 QUICK = Size(
-    bound_eps=np.logspace(-1, -7, 4), bound_samples=(10**3, 10**5), rounding_eps=np.logspace(-2, -14, 5),
-    members=20, rounding_samples=10**5, near_eps=np.logspace(-1, -8, 5), near_samples=20_000, guide_eps=(1e-3,),
+    bound_eps=np.logspace(-1, -7, 4),
+    bound_samples=(10**3, 10**5),
+    rounding_eps=np.logspace(-2, -14, 5),
+    members=20,
+    rounding_samples=10**5,
+    near_eps=np.logspace(-1, -8, 5),
+    near_samples=20_000,
+    guide_eps=(1e-3,),
     states=STATES[1:3],
     effort=Effort(samples=(10**4,), naive_samples=(10**4,), widths=(PROOF,), reference_width=1e-4, repetitions=1),
-)  # fmt: skip
+)
 
 
 def run(output: Path, *, quick: bool = False, seed: int = 0) -> StudyResult:
@@ -101,9 +118,10 @@ def run(output: Path, *, quick: bool = False, seed: int = 0) -> StudyResult:
     files += [save(dataset, output / f"{stem}.h5") for stem, dataset in guides.items()]
     rows = [row for dataset in guides.values() for row in _advice(dataset)]
     facts = {
-        "sampled_bound": _bound_facts(drawn["sampled_bound"]), "rounding": _rounding_facts(drawn["rounding"]),
+        "sampled_bound": _bound_facts(drawn["sampled_bound"]),
+        "rounding": _rounding_facts(drawn["rounding"]),
         "near_critical": list(_near_facts(drawn["near_critical"])),
-    }  # fmt: skip
+    }
     return StudyResult(
         table=_table(facts, rows), files=tuple(files), data={**facts, "methods": rows}, status=_status(facts)
     )
@@ -122,14 +140,21 @@ def _drawn(size: Size, seed: int, progress: Progress) -> dict[str, xr.Dataset]:
             hard, eps=size.bound_eps, samples=size.bound_samples, seed=seed, progress=progress
         ),
         "rounding": sweep_rounding(
-            hard, eps=size.rounding_eps, members=size.members, samples=size.rounding_samples, seed=seed,
+            hard,
+            eps=size.rounding_eps,
+            members=size.members,
+            samples=size.rounding_samples,
+            seed=seed,
             progress=progress,
         ),
         "near_critical": sweep_near_critical(
-            cases, eps=size.near_eps, methods=methods, isolated={"certify": CertifyOptions(width=1e-1)},
+            cases,
+            eps=size.near_eps,
+            methods=methods,
+            isolated={"certify": CertifyOptions(width=1e-1)},
             progress=progress,
         ),
-    }  # fmt: skip
+    }
 
 
 def _guide(size: Size, eps: float, seed: int, progress: Progress) -> xr.Dataset:
@@ -142,10 +167,13 @@ def _bound_facts(dataset: xr.Dataset) -> dict[str, object]:
     bound, last = dataset["sampled_upper"].values[-1], int(np.argmin(dataset["eps"].values))
     least = int(np.argmin(bound))
     return {
-        "samples": int(dataset["samples"].values[-1]), "least": float(bound[least]),
-        "least_at_eps": float(dataset["eps"].values[least]), "smallest_eps": float(dataset["eps"].values[last]),
-        "sampled_upper": float(bound[last]), "witnessed_upper": float(dataset["witnessed_upper"].values[last]),
-    }  # fmt: skip
+        "samples": int(dataset["samples"].values[-1]),
+        "least": float(bound[least]),
+        "least_at_eps": float(dataset["eps"].values[least]),
+        "smallest_eps": float(dataset["eps"].values[last]),
+        "sampled_upper": float(bound[last]),
+        "witnessed_upper": float(dataset["witnessed_upper"].values[last]),
+    }
 
 
 def _rounding_facts(dataset: xr.Dataset) -> dict[str, object]:
@@ -180,10 +208,12 @@ def _near_facts(dataset: xr.Dataset) -> Iterator[dict[str, object]]:
                 shown = (ratio < 2.0) & (ratio > 0.5)
             count = int(np.argmin(shown)) if not shown.all() else len(shown)
             yield {
-                "case": str(one["parameter"].item()), "gap": float(one["gap"]),
-                "resolved_at_eps": float(eps[count - 1]) if count else None, "all_resolved": bool(shown.all()),
+                "case": str(one["parameter"].item()),
+                "gap": float(one["gap"]),
+                "resolved_at_eps": float(eps[count - 1]) if count else None,
+                "all_resolved": bool(shown.all()),
                 "d_H_at_smallest_eps": float(read[0]),
-            }  # fmt: skip
+            }
 
 
 def _advice(dataset: xr.Dataset) -> Iterator[dict[str, object]]:
@@ -193,12 +223,14 @@ def _advice(dataset: xr.Dataset) -> Iterator[dict[str, object]]:
         sampled = [j for j, name in enumerate(one["series"].values) if str(name).startswith("sample")]
         worst = max(sampled, key=lambda j: (float(one["setting"][j]), float(one["error"][j])))
         yield {
-            "state": str(state), "eps": float(dataset["eps"]),
-            "most_samples": float(one["setting"][worst]), "worst_sampled_error": float(one["error"][worst]),
+            "state": str(state),
+            "eps": float(dataset["eps"]),
+            "most_samples": float(one["setting"][worst]),
+            "worst_sampled_error": float(one["error"][worst]),
             "worst_sampled_outcome": ("not_run", *RUN_OUTCOMES)[int(one["outcome"][worst])],
             "number": _fastest(one, one["error"].values <= ESTIMATE),
             "proof": _fastest(one, one["proved"].values <= PROOF),
-        }  # fmt: skip
+        }
 
 
 def _fastest(one: xr.Dataset, good: np.ndarray) -> dict[str, object] | None:
@@ -207,9 +239,12 @@ def _fastest(one: xr.Dataset, good: np.ndarray) -> dict[str, object] | None:
     if not np.isfinite(seconds[best]):
         return None
     return {
-        "method": str(one["series"].values[best]), "setting": float(one["setting"][best]),
-        "seconds": float(seconds[best]), "error": float(one["error"][best]), "proved": float(one["proved"][best]),
-    }  # fmt: skip
+        "method": str(one["series"].values[best]),
+        "setting": float(one["setting"][best]),
+        "seconds": float(seconds[best]),
+        "error": float(one["error"][best]),
+        "proved": float(one["proved"][best]),
+    }
 
 
 def _table(facts: dict, rows: list[dict]) -> str:
@@ -226,20 +261,31 @@ def _table(facts: dict, rows: list[dict]) -> str:
         f"{rounding['worst_cancellation_free_error']:.0e}, down to eps = {rounding['smallest_eps']:.0e}.",
     ]
     near = [
-        (f["case"], f"{f['gap']:+.0e}",
-         "not" if f["resolved_at_eps"] is None else f"{f['resolved_at_eps']:.0e}" + " or more" * f["all_resolved"],
-         f"{f['d_H_at_smallest_eps']:.2e}")
+        (
+            f["case"],
+            f"{f['gap']:+.0e}",
+            "not" if f["resolved_at_eps"] is None else f"{f['resolved_at_eps']:.0e}" + " or more" * f["all_resolved"],
+            f"{f['d_H_at_smallest_eps']:.2e}",
+        )
         for f in facts["near_critical"]
-    ]  # fmt: skip
+    ]
     advice = [
-        (r["state"], f"{r['eps']:.0e}", f"{r['worst_sampled_error']:.1e} ({r['worst_sampled_outcome']})",
-         _said(r["number"]), _said(r["proof"]))
+        (
+            r["state"],
+            f"{r['eps']:.0e}",
+            f"{r['worst_sampled_error']:.1e} ({r['worst_sampled_outcome']})",
+            _said(r["number"]),
+            _said(r["proof"]),
+        )
         for r in rows
-    ]  # fmt: skip
+    ]
     columns = (
-        "state", "eps", f"worst of {max(r['most_samples'] for r in rows):.0e} samples, rel. error",
-        f"a number to {ESTIMATE:.0e}: fastest", f"proved to {PROOF:.0e}: fastest",
-    )  # fmt: skip
+        "state",
+        "eps",
+        f"worst of {max(r['most_samples'] for r in rows):.0e} samples, rel. error",
+        f"a number to {ESTIMATE:.0e}: fastest",
+        f"proved to {PROOF:.0e}: fastest",
+    )
     near_table = text_table(("parameter", "relative gap", "resolved at eps", "d_H at the smallest eps"), near)
     said = "Which method, when (measured here, warm):"
     return "\n".join([*notes, "", near_table, "", said, text_table(columns, advice)])

@@ -21,10 +21,16 @@ def scene_with(G: list[list[object]], friction: Section | None) -> Scene:
     coordinates = [Coordinate(name=f"x{i}", unit="m", sentence="a coordinate") for i in range(len(G))]
     symbols = [c.symbol for c in coordinates]
     return make_scene(
-        name="point", sentence="a point with a given inertia", source="a test", coordinates=coordinates, parameters=(),
-        inertia=sp.Matrix(G).inv(), constraint=-symbols[0], tangential_displacements=symbols[1:] if friction else (),
+        name="point",
+        sentence="a point with a given inertia",
+        source="a test",
+        coordinates=coordinates,
+        parameters=(),
+        inertia=sp.Matrix(G).inv(),
+        constraint=-symbols[0],
+        tangential_displacements=symbols[1:] if friction else (),
         friction=friction,
-    )  # fmt: skip
+    )
 
 
 @dataclass(frozen=True)
@@ -71,8 +77,11 @@ def slips_by_the_quartic_in_kappa(contact: Numbers) -> np.ndarray:
     det(Q + x)^2 = |adj(Q + x) p|^2.
     """
     with mpmath.workdps(DIGITS):
-        a, b, C = (mpmath.mpf(contact.G[0, 0]), mpmath.matrix(contact.G[1:, 0].tolist()),
-                   mpmath.matrix(contact.G[1:, 1:].tolist()))  # fmt: skip
+        a, b, C = (
+            mpmath.mpf(contact.G[0, 0]),
+            mpmath.matrix(contact.G[1:, 0].tolist()),
+            mpmath.matrix(contact.G[1:, 1:].tolist()),
+        )
         nu, v_t = -mpmath.mpf(contact.v[0]), mpmath.matrix(contact.v[1:].tolist())
         Q, p = v_t * b.T + nu * C, a * v_t + nu * b
         trace, determinant = Q[0, 0] + Q[1, 1], Q[0, 0] * Q[1, 1] - Q[0, 1] * Q[1, 0]

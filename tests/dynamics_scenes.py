@@ -71,8 +71,11 @@ class Reference:
         base, slope = v - Yn * (w @ v) / a, Yt - Yn * b / a
         low, high = -np.inf, np.inf
         # -minus r_n <= r_t <= plus r_n and r_n >= 0, r_n = -(w . v + b r_t)/a, each as alpha r_t <= bound
-        for alpha, bound in ((1 + plus * b / a, -plus * (w @ v) / a), (-1 + minus * b / a, -minus * (w @ v) / a),
-                             (b / a, -(w @ v) / a)):  # fmt: skip
+        for alpha, bound in (
+            (1 + plus * b / a, -plus * (w @ v) / a),
+            (-1 + minus * b / a, -minus * (w @ v) / a),
+            (b / a, -(w @ v) / a),
+        ):
             if alpha > 0:
                 high = min(high, bound / alpha)
             elif alpha < 0:
@@ -108,7 +111,7 @@ def space_block(section: str) -> Scene:
     friction = {
         "ellipse": Ellipse(mu_1=mu, mu_2=nu, angle=angle),
         "kite": Polygon(vertices=((mu, 0), (0, nu), (-2 * mu, 0), (0, -nu))),
-    }[section]  # fmt: skip
+    }[section]
     return make_scene(
         name=f"block_on_{section}",
         sentence="a point with coupled inertia above a floor",

@@ -107,9 +107,22 @@ def _text(value: Any) -> str:
 
 
 FORBIDDEN = (
-    "exec", "os.system", "os.exec", "os.fork", "os.posix_spawn", "os.spawn", "subprocess.Popen", "socket.connect",
-    "pickle.find_class", "shutil.", "ctypes.", "os.remove", "os.rename", "os.mkdir", "open",
-)  # fmt: skip
+    "exec",
+    "os.system",
+    "os.exec",
+    "os.fork",
+    "os.posix_spawn",
+    "os.spawn",
+    "subprocess.Popen",
+    "socket.connect",
+    "pickle.find_class",
+    "shutil.",
+    "ctypes.",
+    "os.remove",
+    "os.rename",
+    "os.mkdir",
+    "open",
+)
 
 
 class _Watch:

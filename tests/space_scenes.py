@@ -22,20 +22,29 @@ CRITICAL = "atan(3 - sqrt(5))"  # with mu = 2 along the rod gamma = 0
 def polygon_rod(name: str, vertices: list[tuple[sp.Expr, sp.Expr]], states: tuple[NamedState, ...] = ()) -> Scene:
     """The spatial rod on a polygon; vertices in units of mu."""
     corners = tuple((MU.symbol * x, MU.symbol * y) for x, y in vertices)
-    return make_spatial_rod(name=name, sentence="rod in space with a polygon", friction=Polygon(vertices=corners),
-                            friction_parameters=(MU,), states=states)  # fmt: skip
-
-
-SQUARE = polygon_rod("square_rod", [(1, 0), (0, 1), (-1, 0), (0, -1)], tuple(
-    NamedState(name=name, sentence=name, keys=keys, parameters={"mu": mu})
-    for name, keys, mu in (
-        ("sliding", {"theta": "atan(2)"}, "1/2"),
-        ("paradox", {"theta": "atan(2)"}, "2"),
-        ("oblique", {"theta": "atan(2)", "heading": "2*pi/3"}, "3/2"),
-        ("critical", {"theta": CRITICAL}, "2"),
-        ("critical_oblique", {"theta": CRITICAL, "heading": "3*pi/4"}, "2"),
+    return make_spatial_rod(
+        name=name,
+        sentence="rod in space with a polygon",
+        friction=Polygon(vertices=corners),
+        friction_parameters=(MU,),
+        states=states,
     )
-))  # fmt: skip
+
+
+SQUARE = polygon_rod(
+    "square_rod",
+    [(1, 0), (0, 1), (-1, 0), (0, -1)],
+    tuple(
+        NamedState(name=name, sentence=name, keys=keys, parameters={"mu": mu})
+        for name, keys, mu in (
+            ("sliding", {"theta": "atan(2)"}, "1/2"),
+            ("paradox", {"theta": "atan(2)"}, "2"),
+            ("oblique", {"theta": "atan(2)", "heading": "2*pi/3"}, "3/2"),
+            ("critical", {"theta": CRITICAL}, "2"),
+            ("critical_oblique", {"theta": CRITICAL, "heading": "3*pi/4"}, "2"),
+        )
+    ),
+)
 SCENES = {scene.name: scene for scene in (load_scene("spatial_rod"), load_scene("spatial_rod_ellipse"), SQUARE)}
 STATES = [(scene.name, state.name) for scene in SCENES.values() for state in scene.states]
 

@@ -175,9 +175,19 @@ def test_listing_the_studies_imports_none_of_them():
 
 
 COMMANDS = [
-    "scenes", "new-scene", "derive", "check", "classify", "distance", "rate", "sweep", "study", "plot", "simulate",
+    "scenes",
+    "new-scene",
+    "derive",
+    "check",
+    "classify",
+    "distance",
+    "rate",
+    "sweep",
+    "study",
+    "plot",
+    "simulate",
     "ensemble",
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize("command", COMMANDS)

@@ -41,8 +41,7 @@ def test_simulate_answers_with_the_keys_that_scripts_rely_on(capsys):
 
 
 def test_a_rod_in_free_fall_is_where_the_steps_of_the_scheme_put_it(capsys):
-    answer = run_json(capsys, "simulate", *FALL, "--set", "gravity=10", "--step", "0.125",
-                      "--until", "0.5")  # fmt: skip
+    answer = run_json(capsys, "simulate", *FALL, "--set", "gravity=10", "--step", "0.125", "--until", "0.5")
     # q moves with the old velocity: y = 3 - 10 h^2 (0 + 1 + 2 + 3), exactly in binary
     assert answer["final"]["q"] == [0.25, 3 - 10 * 0.125**2 * 6, math.pi / 2]
     assert answer["final"]["u"] == [0.5, -5.0, 0.0]

@@ -202,8 +202,9 @@ def random_planar(seed: int, count: int) -> list[tuple[list[list[Fraction]], Fra
 
 
 def planar_scene(G: list[list[Fraction]], minus: Fraction, plus: Fraction) -> painleve.mechanics.scene.Scene:
-    return scene_with([[sp.Rational(x) for x in row] for row in G],
-                      Segment(minus=sp.Rational(minus), plus=sp.Rational(plus)))  # fmt: skip
+    return scene_with(
+        [[sp.Rational(x) for x in row] for row in G], Segment(minus=sp.Rational(minus), plus=sp.Rational(plus))
+    )
 
 
 @pytest.mark.parametrize(("G", "minus", "plus", "v"), random_planar(6, 60))
@@ -254,8 +255,9 @@ def test_planar_separation_at_negative_gamma_has_three_solutions() -> None:
 
 
 def test_a_critical_planar_contact_has_a_family_that_ends_in_sticking() -> None:
-    found = coulomb_solutions(scene_with([[10, -9], [-9, 9]], Segment(minus=0, plus=sp.Rational(10, 9))),
-                              (0, 0), [0, -1])  # fmt: skip
+    found = coulomb_solutions(
+        scene_with([[10, -9], [-9, 9]], Segment(minus=0, plus=sp.Rational(10, 9))), (0, 0), [0, -1]
+    )
     (family,) = [solution for solution in found.solutions if solution.family is not None]
     assert family.multiplicity is None
     np.testing.assert_allclose(family.family, [[0, 0], [1, 10 / 9]], rtol=1e-15)
@@ -320,7 +322,8 @@ def test_an_ellipse_is_the_unit_disc_in_stretched_tangents() -> None:
     for angle, mu_1, mu_2 in ((0, 2, sp.Rational(1, 2)), (sp.pi / 6, 2, 1), (sp.Rational(3, 10), 1, 3)):
         E = sp.diag(1, sp.rot_ccw_axis3(angle)[:2, :2] * sp.diag(mu_1, mu_2))
         ellipse = coulomb_solutions(
-            scene_with(G.tolist(), Ellipse(mu_1=mu_1, mu_2=mu_2, angle=angle)), AT_REST, list(v))  # fmt: skip
+            scene_with(G.tolist(), Ellipse(mu_1=mu_1, mu_2=mu_2, angle=angle)), AT_REST, list(v)
+        )
         disc = coulomb_solutions(scene_with((E.T * G * E).tolist(), Disc(mu=1)), AT_REST, list(E.T * v))
         back = impulses(disc) @ np.array(E.T, dtype=float)
         np.testing.assert_allclose(back[np.lexsort(back.T.round(9))], impulses(ellipse), rtol=1e-12, atol=1e-15)
@@ -329,11 +332,14 @@ def test_an_ellipse_is_the_unit_disc_in_stretched_tangents() -> None:
 # --- polygons --------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("G", "v"), [
-    ([[10, -9, 0], [-9, 9, 0], [0, 0, 9]], [-1, Fraction(1, 2), 2]),
-    (STEEP, [-1, 3, 1]),
-    ([[10, -15, 0], [-15, 25, 0], [0, 0, 9]], [1, -20, 1]),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("G", "v"),
+    [
+        ([[10, -9, 0], [-9, 9, 0], [0, 0, 9]], [-1, Fraction(1, 2), 2]),
+        (STEEP, [-1, 3, 1]),
+        ([[10, -15, 0], [-15, 25, 0], [0, 0, 9]], [1, -20, 1]),
+    ],
+)
 def test_a_disc_is_the_limit_of_polygons(G: list[list[int]], v: list[Fraction]) -> None:
     """In Hausdorff's distance: a staircase of vertices and edges can cross the slip equation several times near a
     root."""
@@ -413,13 +419,16 @@ def test_numbers_are_read_by_name_and_order_alike_and_a_float_is_its_decimal() -
     np.testing.assert_array_equal(impulses(listed), impulses(named))
 
 
-@pytest.mark.parametrize(("q", "v", "message"), [
-    ((0, 0), (-1, 0, 0), "q needs 3 numbers (x0, x1, x2), not 2"),
-    ((0, 0, 0), {"u_x0": 1, "u_x1": 2, "x2": 3}, "missing or unknown: u_x2, x2"),
-    ((0, 0, "__import__('os')"), (-1, 0, 0), "q: x2"),
-    ((0, 0, 0), "-1", "v needs 3 numbers"),
-    ((0, 0, float("nan")), (-1, 0, 0), "q: x2"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("q", "v", "message"),
+    [
+        ((0, 0), (-1, 0, 0), "q needs 3 numbers (x0, x1, x2), not 2"),
+        ((0, 0, 0), {"u_x0": 1, "u_x1": 2, "x2": 3}, "missing or unknown: u_x2, x2"),
+        ((0, 0, "__import__('os')"), (-1, 0, 0), "q: x2"),
+        ((0, 0, 0), "-1", "v needs 3 numbers"),
+        ((0, 0, float("nan")), (-1, 0, 0), "q: x2"),
+    ],
+)
 def test_bad_numbers_are_named_in_one_line(q: object, v: object, message: str) -> None:
     with pytest.raises(InputError) as error:
         coulomb_solutions(scene_with(STEEP, Disc(mu=1)), q, v)

@@ -89,12 +89,15 @@ def test_generic_paradoxes_have_an_odd_number_of_jumps_exactly_where_friction_wo
     assert seen >= {(0, 0), (1, 0), (0, 1), (1, 1)}
 
 
-@pytest.mark.parametrize(("G", "v_t", "expected"), [
-    ([[1, -1, 0], [-1, 2, -2], [0, -2, 5]], (-1, 2), ["slip"]),
-    ([[1, -2, 0], [-2, 5, -2], [0, -2, 5]], (-1, 2), ["slip", "stick"]),
-    ([[7, -8, 0], [-8, 11, -3], [0, -3, 5]], (-1, 1), ["slip", "slip"]),
-    ([[10, -18, 0], [-18, 36, 0], [0, 0, 16]], (-1, 1), ["stick"]),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("G", "v_t", "expected"),
+    [
+        ([[1, -1, 0], [-1, 2, -2], [0, -2, 5]], (-1, 2), ["slip"]),
+        ([[1, -2, 0], [-2, 5, -2], [0, -2, 5]], (-1, 2), ["slip", "stick"]),
+        ([[7, -8, 0], [-8, 11, -3], [0, -3, 5]], (-1, 1), ["slip", "slip"]),
+        ([[10, -18, 0], [-18, 36, 0], [0, 0, 16]], (-1, 1), ["stick"]),
+    ],
+)
 def test_isolated_jumps_are_limits_of_the_solutions_of_slight_impacts_and_of_slight_departures(
     G: list[list[int]], v_t: tuple[int, int], expected: list[str]
 ) -> None:

@@ -121,7 +121,8 @@ def test_the_rod_s_band_edges_and_least_critical_friction_are_the_published_ones
         assert x.kind is APPROACHED
         assert same(x.friction, value)
         assert classify(make_state(ROD, keys={"theta": x.place}, parameters={"mu": mu})).branch is (
-            Branch.CRITICAL_APPROACHED)  # fmt: skip
+            Branch.CRITICAL_APPROACHED
+        )
     (least,) = found.extrema
     assert found.least is least
     assert (least.place, least.friction, least.extremum) == (sp.atan(2), sp.Rational(4, 3), Extremum.MINIMUM)
@@ -138,8 +139,9 @@ def test_at_the_least_friction_the_two_edges_are_one_double_zero_and_below_it_th
     assert len(critical_states(ROD, "theta", parameters={"mu": "4/3 + 1e-9"}).zeros) == 2
 
 
-@pytest.mark.parametrize(("k", "kind"), [("2", APPROACHED), ("416/100", APPROACHED), ("417/100", ISOLATED),
-                                         ("6", ISOLATED)])  # fmt: skip
+@pytest.mark.parametrize(
+    ("k", "kind"), [("2", APPROACHED), ("416/100", APPROACHED), ("417/100", ISOLATED), ("6", ISOLATED)]
+)
 def test_the_worn_rod_s_critical_state_changes_its_kind_at_25_6(k, kind):
     found = critical_states(WORN, "theta", parameters={"k": k})
     (zero,) = [x for x in found.zeros if x.place is not None]
@@ -153,8 +155,9 @@ def test_the_worn_rod_s_other_edges_are_enclosed_where_a_root_finder_sees_them()
     found = critical_states(WORN, "theta", parameters={"k": 6})
     first, _, last = (float(x.enclosure.mid()) for x in found.zeros)
     state = make_state(WORN, keys={"theta": 1}, parameters={"k": 6})
-    gamma = sp.lambdify(WORN.q[2], derive(WORN).gamma.xreplace(
-        {p.symbol: state.parameters[p.name] for p in WORN.parameters}), "mpmath")  # fmt: skip
+    gamma = sp.lambdify(
+        WORN.q[2], derive(WORN).gamma.xreplace({p.symbol: state.parameters[p.name] for p in WORN.parameters}), "mpmath"
+    )
     for place in (first, last):
         assert abs(mpmath.findroot(gamma, place) - place) < 1e-14
 

@@ -137,10 +137,16 @@ def block(friction: Segment | None, *parameters: Parameter) -> Scene:
     """A tilted block-like scene with constant, coupled inertia: M = [[2, 1], [1, 3]], g = -y, displacement x."""
     first, second = (Coordinate(name=n, unit="m", sentence=f"coordinate {n}") for n in ("x", "y"))
     return make_scene(
-        name="block", sentence="a block", source="a test", coordinates=(first, second), parameters=parameters,
-        inertia=sp.Matrix([[2, 1], [1, 3]]), constraint=-second.symbol,
-        tangential_displacements=() if friction is None else (first.symbol,), friction=friction,
-    )  # fmt: skip
+        name="block",
+        sentence="a block",
+        source="a test",
+        coordinates=(first, second),
+        parameters=parameters,
+        inertia=sp.Matrix([[2, 1], [1, 3]]),
+        constraint=-second.symbol,
+        tangential_displacements=() if friction is None else (first.symbol,),
+        friction=friction,
+    )
 
 
 def test_a_frictionless_scene_has_gamma_a_and_no_tangential_quantities():
@@ -154,8 +160,9 @@ def test_a_frictionless_scene_has_gamma_a_and_no_tangential_quantities():
 
 
 def test_an_asymmetric_section_takes_the_lesser_of_its_two_ends():
-    low, high = (Parameter(name=n, unit="1", sentence="coefficient", default="1", range="nonnegative")
-                 for n in ("low", "high"))  # fmt: skip
+    low, high = (
+        Parameter(name=n, unit="1", sentence="coefficient", default="1", range="nonnegative") for n in ("low", "high")
+    )
     d = derive(block(Segment(minus=low.symbol, plus=high.symbol), low, high))
     a, b = sp.Rational(2, 5), -sp.Rational(1, 5)
     assert (d.a, d.b, d.C) == (a, b, sp.Rational(3, 5))
@@ -168,8 +175,9 @@ def test_an_asymmetric_section_takes_the_lesser_of_its_two_ends():
 
 
 def test_gamma_of_an_equal_section_is_the_same_written_with_one_symbol_or_two():
-    low, high = (Parameter(name=n, unit="1", sentence="coefficient", default="1", range="nonnegative")
-                 for n in ("low", "high"))  # fmt: skip
+    low, high = (
+        Parameter(name=n, unit="1", sentence="coefficient", default="1", range="nonnegative") for n in ("low", "high")
+    )
     two = derive(block(Segment(minus=low.symbol, plus=high.symbol), low, high)).gamma
     one = derive(block(Segment(minus=low.symbol, plus=low.symbol), low, high)).gamma
     for number in (0, 1, 3):
@@ -180,10 +188,16 @@ def test_where_b_vanishes_everywhere_no_friction_is_critical():
     first, second = (Coordinate(name=n, unit="m", sentence=f"coordinate {n}") for n in ("x", "y"))
     mu_ = Parameter(name="mu", unit="1", sentence="coefficient", default="1", range="nonnegative")
     scene = make_scene(
-        name="particle", sentence="a particle", source="a test", coordinates=(first, second), parameters=(mu_,),
-        inertia=sp.eye(2), constraint=-second.symbol, tangential_displacements=(first.symbol,),
+        name="particle",
+        sentence="a particle",
+        source="a test",
+        coordinates=(first, second),
+        parameters=(mu_,),
+        inertia=sp.eye(2),
+        constraint=-second.symbol,
+        tangential_displacements=(first.symbol,),
         friction=Segment(minus=mu_.symbol, plus=mu_.symbol),
-    )  # fmt: skip
+    )
     d = derive(scene)
     assert d.critical_friction == sp.oo
     assert d.gamma == 1

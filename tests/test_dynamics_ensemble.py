@@ -31,8 +31,7 @@ def test_an_ensemble_is_the_same_bit_for_bit_on_any_number_of_threads(difference
         assert other.as_dict() == runs[0].as_dict()
         for name in ("step", "outcome", "time", "steps"):
             np.testing.assert_array_equal(getattr(other.members, name), getattr(runs[0].members, name))
-    assert runs[0].as_dict() != run_ensemble(
-        STOSS, step=2e-4, count=2000, until=0.9, seed=6, **difference).as_dict()  # fmt: skip
+    assert runs[0].as_dict() != run_ensemble(STOSS, step=2e-4, count=2000, until=0.9, seed=6, **difference).as_dict()
 
 
 @pytest.mark.parametrize(
@@ -84,8 +83,19 @@ def test_fractions_and_times_are_those_of_the_members() -> None:
 
 def test_initial_states_fill_the_two_balls() -> None:
     start = as_start(PARADOX)
-    task = _Task(start=start, method=load_scheme("contact_dynamics"), theta=0.0, tolerance=0.0, step=1e-3, until=1.0,
-                 count=4000, seed=0, spread=None, window=None, ball=0.1)  # fmt: skip
+    task = _Task(
+        start=start,
+        method=load_scheme("contact_dynamics"),
+        theta=0.0,
+        tolerance=0.0,
+        step=1e-3,
+        until=1.0,
+        count=4000,
+        seed=0,
+        spread=None,
+        window=None,
+        ball=0.1,
+    )
     h, q, u = task.draw(0, 4000)
     assert (h == 1e-3).all()
     for values, centre in ((q, start.q), (u, start.u)):

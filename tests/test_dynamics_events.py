@@ -80,8 +80,14 @@ def test_a_tip_at_rest_has_every_mode_that_solves_newtons_law() -> None:
     """Each mode is put back into M a = f + W lambda and Coulomb's law, and they are counted another way."""
     random, counts = np.random.default_rng(0), set()
     for _ in range(300):
-        parameters = {"beta": random.uniform(-1.2, 1.2), "mu": random.uniform(0.1, 6.0), "weight": random.normal() * 5,
-                      "beat": random.normal() * 20, "drag": 0.0, "bend": 0.0}  # fmt: skip
+        parameters = {
+            "beta": random.uniform(-1.2, 1.2),
+            "mu": random.uniform(0.1, 6.0),
+            "weight": random.normal() * 5,
+            "beat": random.normal() * 20,
+            "drag": 0.0,
+            "bend": 0.0,
+        }
         start = make_start(block(), q={"x": 0, "y": 0}, parameters={k: float(v) for k, v in parameters.items()})
         point = ContactPoint.at(start, 0.5, np.array(start.q), np.array(start.u))
         modes = closed_modes(point, 0)
@@ -93,8 +99,11 @@ def test_a_tip_at_rest_has_every_mode_that_solves_newtons_law() -> None:
             assert a_n >= -1e-10
             assert abs(normal * a_n) < 1e-9
             assert abs(tangential) <= parameters["mu"] * normal + 1e-9
-            assert abs(a_t) < 1e-9 or mode is Branch.FREE or tangential * a_t == pytest.approx(
-                -parameters["mu"] * normal * abs(a_t), rel=1e-9)  # fmt: skip
+            assert (
+                abs(a_t) < 1e-9
+                or mode is Branch.FREE
+                or tangential * a_t == pytest.approx(-parameters["mu"] * normal * abs(a_t), rel=1e-9)
+            )
         assert len(modes) == solutions_by_friction_ratio(point, parameters["mu"])
     assert counts == {1, 3}  # an odd number, but where two of them merge
 
@@ -117,9 +126,15 @@ def solutions_by_friction_ratio(point: ContactPoint, mu: float) -> int:
 
 @pytest.mark.parametrize(
     ("scene", "state"),
-    [("slender_rod", "critical"), ("slender_rod", "double_zero"), ("worn_tip_rod", "approached"),
-     ("worn_tip_rod", "isolated"), ("two_link_arm", "approached"), ("two_link_arm", "isolated")],
-)  # fmt: skip
+    [
+        ("slender_rod", "critical"),
+        ("slender_rod", "double_zero"),
+        ("worn_tip_rod", "approached"),
+        ("worn_tip_rod", "isolated"),
+        ("two_link_arm", "approached"),
+        ("two_link_arm", "isolated"),
+    ],
+)
 def test_no_contact_force_is_made_of_a_gamma_that_is_zero_but_for_rounding(scene: str, state: str) -> None:
     found = simulate(make_state(load_scene(scene), state), scheme="event_driven", step=1e-3, until=0.1)
     assert found.ending is Ending.INCONSISTENT
@@ -238,6 +253,9 @@ def test_a_collision_is_told_from_a_jump_without_one_although_gamma_is_negative(
     assert jump.gamma < 0.0
     (tangential,) = simulate(make_state(ROD, "paradox"), step=1e-3, until=0.1).jumps
     assert tangential.kind is Change.JUMP_WITHOUT_COLLISION
-    (smooth,) = simulate(make_start(block(frictional=False), q={"x": 0, "y": 1}, u={"x": 1},
-                                    parameters={"weight": 10}), step=1e-3, until=1.0).jumps  # fmt: skip
+    (smooth,) = simulate(
+        make_start(block(frictional=False), q={"x": 0, "y": 1}, u={"x": 1}, parameters={"weight": 10}),
+        step=1e-3,
+        until=1.0,
+    ).jumps
     assert smooth.kind is Change.IMPACT

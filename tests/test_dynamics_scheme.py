@@ -31,10 +31,13 @@ def random_case(seed: int) -> tuple[dict[str, float], dict[str, float], dict[str
     """Parameters, q and u of a block: gamma takes both signs, contacts open and close."""
     random = np.random.default_rng(seed)
     parameters = {
-        "beta": float(random.uniform(-0.7, 0.7)), "bend": float(random.uniform(-0.6, 0.6)),
-        "mu": float(random.uniform(0.0, 4.0)), "weight": float(random.uniform(1.0, 20.0)),
-        "drag": float(random.uniform(0.0, 2.0)), "beat": float(random.uniform(-10.0, 10.0)),
-    }  # fmt: skip
+        "beta": float(random.uniform(-0.7, 0.7)),
+        "bend": float(random.uniform(-0.6, 0.6)),
+        "mu": float(random.uniform(0.0, 4.0)),
+        "weight": float(random.uniform(1.0, 20.0)),
+        "drag": float(random.uniform(0.0, 2.0)),
+        "beat": float(random.uniform(-10.0, 10.0)),
+    }
     q = {"x": float(random.normal()), "y": float(random.choice([0.0, random.uniform(0.0, 0.3)]))}
     return parameters, q, {"x": float(random.normal(0.0, 2.0)), "y": float(random.normal(0.0, 0.3))}
 
@@ -89,8 +92,9 @@ def test_free_fall_is_the_sum_of_an_arithmetic_series() -> None:
     found = simulate(start, step=h, until=h * n)
     i = np.arange(n + 1)
     fall = -9.81 * h**2 * i * (i - 1) / 2
-    np.testing.assert_allclose(found.q, np.array([0, 9, 1]) + np.outer(i * h, [1, 2, 3]) + np.outer(fall, [0, 1, 0]),
-                               rtol=1e-13)  # fmt: skip
+    np.testing.assert_allclose(
+        found.q, np.array([0, 9, 1]) + np.outer(i * h, [1, 2, 3]) + np.outer(fall, [0, 1, 0]), rtol=1e-13
+    )
     assert (found.branch == Branch.FREE).all()
     assert not found.r.any()
     assert found.steps == n
@@ -140,10 +144,12 @@ def test_a_slipping_block_stops_where_coulomb_says_and_without_a_jump(scheme: st
 
 def errors(scheme: str, start, reference: Trajectory, steps: list[float], until: float) -> np.ndarray:
     """|u - u_reference| at the end, for each step size."""
-    return np.array([
-        np.abs(simulate(start, scheme=scheme, step=h, until=until, monitor=False).u[-1] - reference.u[-1]).max()
-        for h in steps
-    ])  # fmt: skip
+    return np.array(
+        [
+            np.abs(simulate(start, scheme=scheme, step=h, until=until, monitor=False).u[-1] - reference.u[-1]).max()
+            for h in steps
+        ]
+    )
 
 
 @pytest.mark.parametrize("scheme", STEPPED)
@@ -168,13 +174,19 @@ def test_every_scheme_has_its_stated_order_where_nothing_touches(scheme: str, or
 @pytest.mark.parametrize("scheme", STEPPED)
 def test_stewarts_rod_sticks_at_once_and_turns_about_its_tip(scheme: str) -> None:
     m, inertia, h = 2.0, 1.0, 1e-2
-    start = make_start(ROD, q={"x": 0, "y": "sin(pi/4)", "theta": "pi/4"}, u={"x": -1},
-                       parameters={"m": 2, "I": 1, "mu": 1000})  # fmt: skip
+    start = make_start(
+        ROD, q={"x": 0, "y": "sin(pi/4)", "theta": "pi/4"}, u={"x": -1}, parameters={"m": 2, "I": 1, "mu": 1000}
+    )
     found = simulate(start, scheme=scheme, step=h, until=0.5)
     # The impulse acts at the tip: the angular momentum about it is kept; then a compound pendulum.
     spin = m * math.sin(math.pi / 4) / (inertia + m)
-    pendulum = solve_ivp(lambda t, z: [z[1], -m * 9.81 * math.cos(z[0]) / (inertia + m)], (0, 0.5),
-                         [math.pi / 4, spin], rtol=1e-10, atol=1e-12)  # fmt: skip
+    pendulum = solve_ivp(
+        lambda t, z: [z[1], -m * 9.81 * math.cos(z[0]) / (inertia + m)],
+        (0, 0.5),
+        [math.pi / 4, spin],
+        rtol=1e-10,
+        atol=1e-12,
+    )
     assert found.q[-1, 2] == pytest.approx(pendulum.y[0, -1], abs=0.05)
     assert [j.kind for j in found.jumps] == [Change.JUMP_WITHOUT_COLLISION]
     assert found.jumps[0].time <= 2 * h + 1e-12
@@ -208,8 +220,12 @@ def test_the_step_compiled_and_in_python_are_the_same_function() -> None:
 
 
 def block_motion():
-    start = make_start(block(), q={"x": 1, "y": 0}, u={"x": -2, "y": -1},
-                       parameters={"beta": 0.5, "bend": 0.3, "mu": 2, "weight": 3, "drag": 1})  # fmt: skip
+    start = make_start(
+        block(),
+        q={"x": 1, "y": 0},
+        u={"x": -2, "y": -1},
+        parameters={"beta": 0.5, "bend": 0.3, "mu": 2, "weight": 3, "drag": 1},
+    )
     return start.motion, start
 
 
@@ -380,11 +396,10 @@ def test_the_position_level_scheme_finds_the_one_solution_of_its_step_close_to_t
 
 
 def test_where_the_step_of_the_position_level_scheme_has_several_solutions_the_tip_is_left_free() -> None:
-    found = simulate(make_state(load_scene("slender_rod"), "stoss"), scheme="schatzman_paoli", step=1e-3, until=0.83,
-                     monitor=False)  # fmt: skip
+    found = simulate(
+        make_state(load_scene("slender_rod"), "stoss"), scheme="schatzman_paoli", step=1e-3, until=0.83, monitor=False
+    )
     i = int(np.searchsorted(found.t, 0.8155))
-    assert {b for b, _ in implicit_steps(found.q[i], found.u[i], 1e-3)} == {
-        Branch.FREE, Branch.STICK, Branch.SLIP_PLUS
-    }  # fmt: skip
+    assert {b for b, _ in implicit_steps(found.q[i], found.u[i], 1e-3)} == {Branch.FREE, Branch.STICK, Branch.SLIP_PLUS}
     assert found.branch[i + 1] == Branch.FREE
     assert found.statistics["steps_with_several_solutions"] > 0

@@ -35,24 +35,43 @@ PROVED, REFUTED, SUPPORTED, UNDECIDED = Status.PROVED, Status.REFUTED, Status.SU
 
 
 def plane(
-    *, M: object = ((1, 0), (0, 1)), g: sp.Expr = -Y, s: sp.Expr | None = X, mu: sp.Expr = HALF,
-    minus: sp.Expr | None = None, at: Mapping[str, object] | None = None,
-) -> State:  # fmt: skip
+    *,
+    M: object = ((1, 0), (0, 1)),
+    g: sp.Expr = -Y,
+    s: sp.Expr | None = X,
+    mu: sp.Expr = HALF,
+    minus: sp.Expr | None = None,
+    at: Mapping[str, object] | None = None,
+) -> State:
     """A point in the plane that rests on {g = 0}."""
     friction = None if s is None else Segment(minus=mu if minus is None else minus, plus=mu)
     scene = make_scene(
-        name="plane", sentence="a point on a line", source="made for this test", coordinates=PLANE, parameters=(),
-        inertia=sp.Matrix(M), constraint=g, tangential_displacements=() if s is None else (s,), friction=friction,
-    )  # fmt: skip
+        name="plane",
+        sentence="a point on a line",
+        source="made for this test",
+        coordinates=PLANE,
+        parameters=(),
+        inertia=sp.Matrix(M),
+        constraint=g,
+        tangential_displacements=() if s is None else (s,),
+        friction=friction,
+    )
     return make_state(scene, keys={"x": 0, "y": 0, "u_x": 0, "u_y": 0} | dict(at or {}))
 
 
 def space(friction: Section) -> State:
     """A point in space at rest on the floor z = 0."""
     scene = make_scene(
-        name="space", sentence="a point on a floor", source="made for this test", coordinates=SPACE, parameters=(),
-        inertia=sp.eye(3), constraint=-Z, tangential_displacements=(X, Y), friction=friction,
-    )  # fmt: skip
+        name="space",
+        sentence="a point on a floor",
+        source="made for this test",
+        coordinates=SPACE,
+        parameters=(),
+        inertia=sp.eye(3),
+        constraint=-Z,
+        tangential_displacements=(X, Y),
+        friction=friction,
+    )
     return make_state(scene, keys=dict.fromkeys(("x", "y", "z", "u_x", "u_y", "u_z"), 0))
 
 
@@ -267,7 +286,7 @@ def test_a_zero_that_enclosures_cannot_tell_is_supported_by_a_count_of_points():
         ((40 * X + 1) * (40 * Y + 1), {"x": -sp.Rational(1, 40), "y": sp.Rational(1, 50)}, REFUTED),  # a corner
     ],
     ids=str,
-)  # fmt: skip
+)
 def test_h2_asks_for_a_gradient_only_near_the_constraint(g, at, status):
     state = plane(g=g, at=at, s=X + 3 * Y)
     found = check_hypotheses(state)["H2"]
@@ -347,8 +366,10 @@ SMALL = st.fractions(-3, 3, max_denominator=8)
 
 def polynomial(coefficients: list[Fraction]) -> sp.Expr:
     monomials = (1, X, Y, X**2, X * Y, Y**2)[: len(coefficients)]
-    return sum((sp.Rational(c.numerator, c.denominator) * m for c, m in zip(coefficients, monomials, strict=True)),
-               sp.Integer(0))  # fmt: skip
+    return sum(
+        (sp.Rational(c.numerator, c.denominator) * m for c, m in zip(coefficients, monomials, strict=True)),
+        sp.Integer(0),
+    )
 
 
 LINEAR = st.lists(SMALL, min_size=3, max_size=3).map(polynomial)

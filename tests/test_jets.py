@@ -103,9 +103,11 @@ def test_monomials_are_all_of_their_degree_once_and_rise(variables, order):
 
 
 @given(
-    st.sampled_from(sorted(ONE_VARIABLE)), st.fractions(-1, 1, max_denominator=40), st.integers(0, 4),
+    st.sampled_from(sorted(ONE_VARIABLE)),
+    st.fractions(-1, 1, max_denominator=40),
+    st.integers(0, 4),
     st.sampled_from([sp.Rational(1, n) for n in (1000, 50, 12)]),
-)  # fmt: skip
+)
 @settings(max_examples=80)
 def test_the_jet_of_a_wide_ball_encloses_the_scaled_derivatives_all_over_it(name, share, order, radius):
     """Exact derivatives at a point of the ball [1/3 - r, 1/3 + r], evaluated as a ball of their own."""

@@ -287,10 +287,13 @@ def test_a_tiny_compliance_of_either_sign_gives_the_least_energy_of_the_definiti
 def as_local(contact: Contact) -> Local:
     """The same contact for the reference; its floats taken as they are."""
     return Local(
-        M=mpmath.matrix(contact.M.tolist()), w_n=mpmath.matrix(contact.w_n.tolist()),
+        M=mpmath.matrix(contact.M.tolist()),
+        w_n=mpmath.matrix(contact.w_n.tolist()),
         H=None if contact.H is None else mpmath.matrix(contact.H.tolist()),
-        minus=to_mp(contact.minus), plus=to_mp(contact.plus), g=to_mp(contact.g),
-    )  # fmt: skip
+        minus=to_mp(contact.minus),
+        plus=to_mp(contact.plus),
+        g=to_mp(contact.g),
+    )
 
 
 # --- the compiled scenes ---------------------------------------------------------------------------------------------
@@ -323,9 +326,19 @@ def test_every_compiled_row_is_what_the_definition_gives_at_60_digits(name):
             Y_n, Y_t = (mpmath.lu_solve(local.M, w) for w in (local.w_n, local.H))
             a, b, C = (mpmath.fdot(list(x), list(y)) for x, y in ((local.w_n, Y_n), (local.w_n, Y_t), (local.H, Y_t)))
             expected = [
-                local.g, *local.w_n, *Y_n, a, a + local.plus * b, *local.H, *Y_t, b, C, a - local.minus * b,
-                local.plus, local.minus,
-            ]  # fmt: skip
+                local.g,
+                *local.w_n,
+                *Y_n,
+                a,
+                a + local.plus * b,
+                *local.H,
+                *Y_t,
+                b,
+                C,
+                a - local.minus * b,
+                local.plus,
+                local.minus,
+            ]
         # The edges are differences: their error is that of their terms.
         scale = float(max(1.0, a + local.plus * abs(b), *map(abs, expected)))
         np.testing.assert_array_less(np.abs(rows - np.array([float(x) for x in expected])), 1e-13 * scale)

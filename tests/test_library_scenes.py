@@ -23,10 +23,14 @@ ROD, GENERAL, BODY, ELLIPSE = (load_scene(n) for n in ("slender_rod", "general_r
 OBSTACLE, ARM, LINKS = (load_scene(n) for n in ("rod_on_obstacle", "two_link_arm", "general_arm"))
 MINIMAL, BEAD = load_scene("minimal"), load_scene("bead")
 BRANCHES = {
-    "sliding": Branch.NONE, "hilltop": Branch.NONE, "stoss": Branch.NONE, "paradox": Branch.NEGATIVE,
+    "sliding": Branch.NONE,
+    "hilltop": Branch.NONE,
+    "stoss": Branch.NONE,
+    "paradox": Branch.NEGATIVE,
     "oblique": Branch.NEGATIVE,
-    "isolated": Branch.CRITICAL_ISOLATED, "isolated_by_slope": Branch.CRITICAL_ISOLATED,
-}  # fmt: skip
+    "isolated": Branch.CRITICAL_ISOLATED,
+    "isolated_by_slope": Branch.CRITICAL_ISOLATED,
+}
 STEP = mpmath.mpf(10) ** -20
 
 
@@ -71,9 +75,14 @@ def test_a_general_rod_with_alpha_three_is_the_slender_rod():
 def test_the_general_rod_s_least_critical_friction_found_by_searching_is_the_published_formula(alpha):
     value = sp.Rational(alpha)
     theta = ROD.q[2]
-    friction = sp.lambdify(theta, derive(GENERAL).critical_friction.xreplace(
-        {s: sp.Integer(1) for s in (GENERAL.parameter("m").symbol, GENERAL.parameter("l").symbol)}
-        | {GENERAL.parameter("alpha").symbol: value}), "mpmath")  # fmt: skip
+    friction = sp.lambdify(
+        theta,
+        derive(GENERAL).critical_friction.xreplace(
+            {s: sp.Integer(1) for s in (GENERAL.parameter("m").symbol, GENERAL.parameter("l").symbol)}
+            | {GENERAL.parameter("alpha").symbol: value}
+        ),
+        "mpmath",
+    )
     grid = [mpmath.pi * k / 400 for k in range(1, 200)]
     best = min(grid, key=friction)
     stationary = mpmath.findroot(lambda s: mpmath.diff(friction, s), best)
@@ -110,12 +119,19 @@ def test_the_planar_body_s_law_is_the_same_in_the_coordinates_of_its_contact_poi
     centre = (x.velocity + Y * theta.velocity, y.velocity - X * theta.velocity)
     mu = BODY.parameter("mu").symbol
     other = make_scene(
-        name="by_contact", sentence="a body", source="a test", coordinates=BODY.coordinates,
-        parameters=BODY.parameters, constraint=-y.symbol, tangential_displacements=(x.symbol,),
+        name="by_contact",
+        sentence="a body",
+        source="a test",
+        coordinates=BODY.coordinates,
+        parameters=BODY.parameters,
+        constraint=-y.symbol,
+        tangential_displacements=(x.symbol,),
         kinetic_energy=m * (centre[0] ** 2 + centre[1] ** 2) / 2 + inertia * theta.velocity**2 / 2,
-        friction=Segment(minus=mu, plus=mu), keys=BODY.keys,
-        placement={"theta": theta.symbol}, velocity={"x": BODY.keys[1].symbol},
-    )  # fmt: skip
+        friction=Segment(minus=mu, plus=mu),
+        keys=BODY.keys,
+        placement={"theta": theta.symbol},
+        velocity={"x": BODY.keys[1].symbol},
+    )
     for name in ("a", "b", "C"):
         assert sp.simplify(getattr(derive(other), name) - getattr(derive(BODY), name)) == 0
     mine, theirs = (limit_set(make_state(s, keys={"theta": "atan(2/11)"}, parameters={"mu": 2})) for s in (BODY, other))
@@ -160,8 +176,9 @@ def test_an_ellipse_with_equal_axes_is_a_disc_which_has_no_paradox():
 def test_a_flat_ellipse_tends_to_the_rod_of_four_times_its_inertia():
     """I = m A^2/4, so alpha = 4; the difference is of the order of B^2."""
     rod = at(GENERAL, derive(GENERAL).critical_friction, theta="4/5", alpha="4")
-    differences = [at(ELLIPSE, derive(ELLIPSE).critical_friction, theta="4/5", B=sp.Rational(1, 10**n)) - rod
-                   for n in (3, 6)]  # fmt: skip
+    differences = [
+        at(ELLIPSE, derive(ELLIPSE).critical_friction, theta="4/5", B=sp.Rational(1, 10**n)) - rod for n in (3, 6)
+    ]
     assert abs(differences[0]) < 1e-5
     assert mpmath.almosteq(differences[0] / differences[1], mpmath.mpf(10) ** 6, rel_eps=1e-4)
 
@@ -320,8 +337,16 @@ def test_the_minimal_scene_s_neighbours_by_brute_force_are_those_of_its_branch(n
 
 def test_tangents_of_the_wrong_shape_or_beside_displacements_are_refused():
     x, y = BEAD.coordinates
-    parts = {"name": "block", "sentence": "a block", "source": "a test", "coordinates": (x, y), "parameters": (),
-             "inertia": sp.eye(2), "constraint": -y.symbol, "friction": Segment(minus=1, plus=1)}  # fmt: skip
+    parts = {
+        "name": "block",
+        "sentence": "a block",
+        "source": "a test",
+        "coordinates": (x, y),
+        "parameters": (),
+        "inertia": sp.eye(2),
+        "constraint": -y.symbol,
+        "friction": Segment(minus=1, plus=1),
+    }
     assert make_scene(**parts, tangents=sp.Matrix([1, 0])).tangents == sp.Matrix([1, 0])
     with pytest.raises(InputError, match="H has 3 rows; it needs 2, one for each coordinate"):
         make_scene(**parts, tangents=sp.Matrix([1, 0, 0]))

@@ -44,9 +44,13 @@ def projection(state: State) -> np.ndarray:
     settings_ = clarabel.DefaultSettings()
     settings_.verbose, settings_.tol_gap_abs, settings_.tol_gap_rel, settings_.tol_feas = False, 1e-13, 1e-13, 1e-13
     solver = clarabel.DefaultSolver(
-        sparse.csc_matrix(np.triu(E.T @ response)), E.T @ u, sparse.csc_matrix(A), np.zeros(3),
-        [clarabel.ZeroConeT(1), clarabel.NonnegativeConeT(2)], settings_,
-    )  # fmt: skip
+        sparse.csc_matrix(np.triu(E.T @ response)),
+        E.T @ u,
+        sparse.csc_matrix(A),
+        np.zeros(3),
+        [clarabel.ZeroConeT(1), clarabel.NonnegativeConeT(2)],
+        settings_,
+    )
     return u + response @ np.array(solver.solve().x)
 
 
@@ -169,8 +173,10 @@ def test_the_limit_set_is_positively_homogeneous_in_the_velocity(factor):
 
 @pytest.mark.parametrize("mu", ["2", "5/2", "100"])
 def test_at_gamma_below_zero_u_tilde_does_not_depend_on_the_friction(mu):
-    assert limit_set(make_state(ROD, "paradox", parameters={"mu": mu})).u_tilde == limit_of(
-        "slender_rod", "paradox").u_tilde  # fmt: skip
+    assert (
+        limit_set(make_state(ROD, "paradox", parameters={"mu": mu})).u_tilde
+        == limit_of("slender_rod", "paradox").u_tilde
+    )
 
 
 @pytest.mark.parametrize(("nudge", "kind"), [("-1e-40", "point"), ("0", "segment"), ("1e-40", "pair")])
@@ -205,11 +211,18 @@ def one_sided(minus: str, plus: str, slip: int) -> LimitSet:
     """g = -y and M^-1 = [[4, 1], [1, 1]]: a = b = 1, C = 4; gamma = min(1 - minus, 1 + plus)."""
     x, y = (Coordinate(name=n, unit="m", sentence=f"coordinate {n}") for n in ("x", "y"))
     scene = make_scene(
-        name="one_sided", sentence="a scene", source="a test", coordinates=(x, y), parameters=(),
-        inertia=sp.Matrix([[4, 1], [1, 1]]).inv(), constraint=-y.symbol, tangential_displacements=(x.symbol,),
+        name="one_sided",
+        sentence="a scene",
+        source="a test",
+        coordinates=(x, y),
+        parameters=(),
+        inertia=sp.Matrix([[4, 1], [1, 1]]).inv(),
+        constraint=-y.symbol,
+        tangential_displacements=(x.symbol,),
         friction=Segment(minus=sp.Rational(minus), plus=sp.Rational(plus)),
-        keys=(StateKey(name="slip", unit="m/s", sentence="slip"),), velocity={"x": sp.Symbol("slip", real=True)},
-    )  # fmt: skip
+        keys=(StateKey(name="slip", unit="m/s", sentence="slip"),),
+        velocity={"x": sp.Symbol("slip", real=True)},
+    )
     return limit_set(make_state(scene, keys={"slip": slip}))
 
 
@@ -233,8 +246,13 @@ def test_of_an_asymmetric_section_only_the_end_that_opposes_b_matters(minus, plu
 def test_without_friction_a_is_a_point():
     x, y = (Coordinate(name=n, unit="m", sentence=f"coordinate {n}") for n in ("x", "y"))
     scene = make_scene(
-        name="smooth", sentence="a scene", source="a test", coordinates=(x, y), parameters=(), inertia=sp.eye(2),
+        name="smooth",
+        sentence="a scene",
+        source="a test",
+        coordinates=(x, y),
+        parameters=(),
+        inertia=sp.eye(2),
         constraint=-y.symbol,
-    )  # fmt: skip
+    )
     limit = limit_set(make_state(scene, keys={"u_x": 3}))
     assert (limit.kind, limit.edge, limit.gamma.sign) == ("point", 0, Sign.POSITIVE)

@@ -31,21 +31,35 @@ def minimal(height: sp.Expr, gamma: sp.Expr) -> Scene:
     a, b = (w_n.T * compliance * w_n)[0], (w_n.T * compliance * H)[0]
     mu = sp.cancel((a - gamma) / b)
     return make_scene(
-        name="minimal", sentence="a minimal scene", source="a test", coordinates=(X, Y), parameters=(),
-        inertia=compliance.inv(), constraint=height - y, tangential_displacements=(x,),
-        friction=Segment(minus=mu, plus=mu), keys=(StateKey(name="slip", unit="m/s", sentence="slip", default="1"),),
+        name="minimal",
+        sentence="a minimal scene",
+        source="a test",
+        coordinates=(X, Y),
+        parameters=(),
+        inertia=compliance.inv(),
+        constraint=height - y,
+        tangential_displacements=(x,),
+        friction=Segment(minus=mu, plus=mu),
+        keys=(StateKey(name="slip", unit="m/s", sentence="slip", default="1"),),
         velocity={"x": sp.Symbol("slip", real=True)},
-    )  # fmt: skip
+    )
 
 
 def coupled(beta: sp.Expr) -> Scene:
     """The same as the notes give it: M^-1 = [[4, beta], [beta, 1]], mu = 1, g = -y, gamma = 1 - |beta|."""
     return make_scene(
-        name="coupled", sentence="a minimal scene", source="a test", coordinates=(X, Y), parameters=(),
-        inertia=sp.Matrix([[4, beta], [beta, 1]]).inv(), constraint=-y, tangential_displacements=(x,),
-        friction=Segment(minus=1, plus=1), keys=(StateKey(name="slip", unit="m/s", sentence="slip", default="1"),),
+        name="coupled",
+        sentence="a minimal scene",
+        source="a test",
+        coordinates=(X, Y),
+        parameters=(),
+        inertia=sp.Matrix([[4, beta], [beta, 1]]).inv(),
+        constraint=-y,
+        tangential_displacements=(x,),
+        friction=Segment(minus=1, plus=1),
+        keys=(StateKey(name="slip", unit="m/s", sentence="slip", default="1"),),
         velocity={"x": sp.Symbol("slip", real=True)},
-    )  # fmt: skip
+    )
 
 
 def half_ball(height: sp.Expr, r: mpmath.mpf) -> Iterator[list[mpmath.mpf]]:
@@ -220,12 +234,18 @@ def test_only_the_edge_that_is_critical_is_asked():
     """With b > 0 gamma is attained on s = -mu: the other edge has compliance 2 and no say."""
     minus = Parameter(name="minus", unit="1", sentence="friction", default="1", range="nonnegative")
     scene = make_scene(
-        name="one_sided", sentence="a scene", source="a test", coordinates=(X, Y), parameters=(minus,),
-        inertia=sp.Matrix([[4, 1 + x**2], [1 + x**2, 1]]).inv(), constraint=-y, tangential_displacements=(x,),
+        name="one_sided",
+        sentence="a scene",
+        source="a test",
+        coordinates=(X, Y),
+        parameters=(minus,),
+        inertia=sp.Matrix([[4, 1 + x**2], [1 + x**2, 1]]).inv(),
+        constraint=-y,
+        tangential_displacements=(x,),
         friction=Segment(minus=minus.symbol, plus=1 + sp.Abs(y)),
         keys=(StateKey(name="slip", unit="m/s", sentence="slip", default="1"),),
         velocity={"x": sp.Symbol("slip", real=True)},
-    )  # fmt: skip
+    )
     limit = limit_set(make_state(scene))
     assert limit.edge == -1
     assert neighbours(limit.state, limit.edge).kind is ISOLATED

@@ -138,10 +138,12 @@ def slsqp(limit: LimitSet, eps: float, starts: int = 6) -> float:
             z = np.concatenate([x / np.linalg.norm(x) for x in rng.normal(size=(2, d))]) * rng.uniform(0.3, 1.0)
             with np.errstate(all="ignore"):
                 result = minimize(
-                    lambda z, b=branch: -distance_to(limit, law(z, b)[0]) / eps, z, method="SLSQP",
+                    lambda z, b=branch: -distance_to(limit, law(z, b)[0]) / eps,
+                    z,
+                    method="SLSQP",
                     constraints={"type": "ineq", "fun": lambda z, b=branch: np.array(law(z, b)[1])},
                     options={"maxiter": 300, "ftol": 1e-15},
-                )  # fmt: skip
+                )
                 if min(law(result.x, branch)[1]) > -1e-11:
                     best = max(best, -float(result.fun))
     return best
@@ -189,11 +191,17 @@ def bead(height: sp.Expr, x: sp.Symbol) -> LimitSet:
     coordinates = [Coordinate(name=n, unit="m", sentence=n) for n in ("x", "y")]
     u_x, u_y = (c.velocity for c in coordinates)
     scene = make_scene(
-        name="bead", sentence="a bead on a wall", source="a test", coordinates=coordinates, parameters=(),
-        kinetic_energy=(u_x**2 + u_y**2) / 2, constraint=height - coordinates[1].symbol,
+        name="bead",
+        sentence="a bead on a wall",
+        source="a test",
+        coordinates=coordinates,
+        parameters=(),
+        kinetic_energy=(u_x**2 + u_y**2) / 2,
+        constraint=height - coordinates[1].symbol,
         keys=[StateKey(name="speed", unit="m/s", sentence="speed along the wall", default="1")],
-        placement={"x": sp.Integer(0), "y": height.subs(x, 0)}, velocity={"x": sp.Symbol("speed", real=True)},
-    )  # fmt: skip
+        placement={"x": sp.Integer(0), "y": height.subs(x, 0)},
+        velocity={"x": sp.Symbol("speed", real=True)},
+    )
     return limit_set(make_state(scene, keys={"speed": "1"}))
 
 

@@ -109,8 +109,9 @@ def test_without_its_constraints_the_sticking_map_would_give_too_large_a_constan
     n = 0.75 * np.array([-s, c, 1 / 3])  # S = (n . v) (-sin, cos, 1), and its derivative in theta
     free = max(
         np.linalg.norm((m + x * 0.75 * c) * np.array([-s, c, 1]) + x * 0.75 * s * np.array([-c, -s, 0]))
-        for m in (-np.linalg.norm(n), np.linalg.norm(n)) for x in (-1.0, 1.0)
-    )  # fmt: skip
+        for m in (-np.linalg.norm(n), np.linalg.norm(n))
+        for x in (-1.0, 1.0)
+    )
     assert free - 1e-2 > rate(limit).C
 
 
@@ -125,5 +126,3 @@ def test_the_rate_at_an_isolated_state_is_that_of_the_ends_and_says_so():
     assert "d_H({u-, u_tilde}, A_eps) = C eps" in found.sentence
     assert pytest.approx(rate(named("worn_tip_rod", "paradox")).C, rel=1e-12) == found.C
     assert found.as_dict()["C"] == found.C
-
-

@@ -33,8 +33,12 @@ from painleve.mechanics.state import make_state
 
 STATES = [(scene, state.name) for scene in SCENE_NAMES for state in load_scene(scene).states]
 RADII = (1e-1, 1e-4, 1e-8, 1e-12)
-KINDS_OF_STATE = [("slender_rod", "sliding"), ("slender_rod", "paradox"), ("slender_rod", "critical"),
-                  ("two_link_arm", "approached")]  # fmt: skip
+KINDS_OF_STATE = [
+    ("slender_rod", "sliding"),
+    ("slender_rod", "paradox"),
+    ("slender_rod", "critical"),
+    ("two_link_arm", "approached"),
+]
 SAMPLES = 20_000
 SIGNIFICANCE = 1e-3
 BIN_EDGE = 1e-9  # of a bin's width: how near to its edge another rounding may move a sample to the next bin
@@ -54,8 +58,11 @@ def some_samples(problem: LocalProblem, eps: float, sampler: str, step: int = 21
 def fingerprint(distance: Distance) -> str:
     """Every bit of a result: counts, bounds, and both extremal samples with their preimages."""
     attained = [distance.excess_Aeps_A, distance.excess_A_Aeps]
-    numbers = [[m.dq.tobytes().hex(), m.dv.tobytes().hex(), m.offset.tobytes().hex()] for m in
-               (a.member for a in attained) if m is not None]  # fmt: skip
+    numbers = [
+        [m.dq.tobytes().hex(), m.dv.tobytes().hex(), m.offset.tobytes().hex()]
+        for m in (a.member for a in attained)
+        if m is not None
+    ]
     bounds = [str(a.bounds.as_dict()) for a in attained]
     return json.dumps([dict(distance.counts), bounds, numbers])
 
@@ -96,8 +103,9 @@ def test_every_sample_is_in_both_closed_balls_and_in_contact_where_it_claims_to_
 @pytest.mark.parametrize("sampler", SAMPLERS)
 def test_samples_come_near_to_the_spheres_of_both_balls(sampler: str):
     """The margin that keeps samples inside is of the order of rounding: points within 1% of both spheres are drawn."""
-    members = sample_members(problem_of("slender_rod", "paradox").limit, 1e-3,
-                             SampleOptions(samples=SAMPLES, sampler=sampler))  # fmt: skip
+    members = sample_members(
+        problem_of("slender_rod", "paradox").limit, 1e-3, SampleOptions(samples=SAMPLES, sampler=sampler)
+    )
     assert np.linalg.norm(members["dv"], axis=1).max() > 0.99e-3
     assert np.linalg.norm(members["dq"], axis=1).max() > 0.99e-3
 

@@ -24,10 +24,17 @@ def extra(name: str) -> Parameter:
 def block(**changes: object) -> Scene:
     """A block on a floor, with something changed."""
     parts: dict[str, object] = {
-        "name": "block", "sentence": "a block", "source": "a test", "coordinates": (X, Y), "parameters": (MU,),
-        "inertia": sp.eye(2), "constraint": -y, "tangential_displacements": (x,),
-        "friction": Segment(minus=mu, plus=mu), "keys": (KEY,),
-    }  # fmt: skip
+        "name": "block",
+        "sentence": "a block",
+        "source": "a test",
+        "coordinates": (X, Y),
+        "parameters": (MU,),
+        "inertia": sp.eye(2),
+        "constraint": -y,
+        "tangential_displacements": (x,),
+        "friction": Segment(minus=mu, plus=mu),
+        "keys": (KEY,),
+    }
     return make_scene(**(parts | changes))
 
 
@@ -65,14 +72,18 @@ WRONG = {
     "a parameter named like the time": ({"parameters": (MU, extra("t"))}, "t is declared twice"),
     "two keys of one name": ({"keys": (KEY, KEY)}, "slip is declared twice"),
     "a key named like a parameter": (
-        {"keys": (StateKey(name="mu", unit="1", sentence="a key"),)}, "mu is declared twice"),
+        {"keys": (StateKey(name="mu", unit="1", sentence="a key"),)},
+        "mu is declared twice",
+    ),
     "two states of one name": (
-        {"states": [NamedState(name="rest", sentence="at rest", keys={}, parameters={})] * 2}, "rest is declared"),
+        {"states": [NamedState(name="rest", sentence="at rest", keys={}, parameters={})] * 2},
+        "rest is declared",
+    ),
     "no constraint": ({"constraint": mu}, "g does not depend on any coordinate"),
     "friction without displacement": ({"tangential_displacements": ()}, "0 tangential displacements with a segment"),
     "displacement without friction": ({"friction": None}, "1 tangential displacements with no friction section"),
     "two displacements": ({"tangential_displacements": (x, y)}, "2 tangential displacements with a segment"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("changes", "message"), WRONG.values(), ids=WRONG.keys())

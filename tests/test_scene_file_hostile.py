@@ -37,12 +37,41 @@ def checked(message: str) -> str:
 
 
 WRONG = (
-    '""', "-1", "0.5", "true", "1979-05-27", "07:32:00", "[]", "[[1], [[2]]]", "{}", "{ a = 1 }", "nan", "-inf",
-    "1e400", "1e-9999", "9999999999e99999999", "0x" + "f" * 1100, '"9**9**9"', '"x**(10**9)"', '"__import__(\'os\')"',
-    '"1/0"', '"x.__class__"', '"lambda: 1"', '"[x for x in (1,)]"', '"f\\u0000"', '"\\u001b[31mred"', '"\\u202eevil"',
-    '"\\u0430"', '"' + "(" * 300 + '"', '"' + "x+" * 2000 + 'x"', '"x := 1"', '"\'a\' * 9"', '"x if x else y"', '"x;y"',
+    '""',
+    "-1",
+    "0.5",
+    "true",
+    "1979-05-27",
+    "07:32:00",
+    "[]",
+    "[[1], [[2]]]",
+    "{}",
+    "{ a = 1 }",
+    "nan",
+    "-inf",
+    "1e400",
+    "1e-9999",
+    "9999999999e99999999",
+    "0x" + "f" * 1100,
+    '"9**9**9"',
+    '"x**(10**9)"',
+    "\"__import__('os')\"",
+    '"1/0"',
+    '"x.__class__"',
+    '"lambda: 1"',
+    '"[x for x in (1,)]"',
+    '"f\\u0000"',
+    '"\\u001b[31mred"',
+    '"\\u202eevil"',
+    '"\\u0430"',
+    '"' + "(" * 300 + '"',
+    '"' + "x+" * 2000 + 'x"',
+    '"x := 1"',
+    "\"'a' * 9\"",
+    '"x if x else y"',
+    '"x;y"',
     '"$\\\\input{a}$"',
-)  # fmt: skip
+)
 
 
 STRIDE = 6
@@ -71,15 +100,32 @@ def test_a_wrong_value_in_any_field_is_refused_on_the_line_of_that_field(value):
 
 
 def test_a_field_that_is_missing_or_unknown_is_refused_by_name():
-    required = [("name",), ("sentence",), ("coordinates",), ("mechanics",), ("contact",), ("contact", "height"),
-                ("mechanics", "kinetic_energy"), ("friction", "mu"), ("friction", "kind"), ("parameters", "m", "unit"),
-                ("parameters", "m", "default"), ("coordinates", "x", "sentence"), ("states", "paradox", "sentence"),
-                ("outline", "floor"), ("keys", "slip", "unit")]  # fmt: skip
+    required = [
+        ("name",),
+        ("sentence",),
+        ("coordinates",),
+        ("mechanics",),
+        ("contact",),
+        ("contact", "height"),
+        ("mechanics", "kinetic_energy"),
+        ("friction", "mu"),
+        ("friction", "kind"),
+        ("parameters", "m", "unit"),
+        ("parameters", "m", "default"),
+        ("coordinates", "x", "sentence"),
+        ("states", "paradox", "sentence"),
+        ("outline", "floor"),
+        ("keys", "slip", "unit"),
+    ]
     for path in required:
         assert path[-1] in refusal(changed(path, None))
-    for old, new, near in (("sentence =", "sentense =", "sentence"), ("height =", "hight =", "height"),
-                           ("[placement]", "[placment]", "placement"), ("gravity*y", "gravty*y", "gravity"),
-                           ('kind = "segment"', 'kind = "segmant"', "segment")):  # fmt: skip
+    for old, new, near in (
+        ("sentence =", "sentense =", "sentence"),
+        ("height =", "hight =", "height"),
+        ("[placement]", "[placment]", "placement"),
+        ("gravity*y", "gravty*y", "gravity"),
+        ('kind = "segment"', 'kind = "segmant"', "segment"),
+    ):
         assert f"did you mean {near}?" in refusal(TEMPLATE.replace(old, new, 1))
 
 
@@ -97,25 +143,76 @@ def test_a_file_cut_off_anywhere_is_a_scene_or_is_refused():
 
 
 NAMES = (
-    "lambda", "class", "None", "__import__", "_x", "2x", "x y", "x-y", "x.y", "", "é", "а", "ｘ", "x\u200b", "x\u0000",
-    "x\n", "\u001b[0m", "sin", "atan2", "pi", "t", "nan", "oo", "u_x", "u_", "x" * 33, "../x", "x/y", "x;y", "$x$",
-    "%s", "{x}", "gamma", "eps", "verdict", "m_exact", "excess_x",
-)  # fmt: skip
+    "lambda",
+    "class",
+    "None",
+    "__import__",
+    "_x",
+    "2x",
+    "x y",
+    "x-y",
+    "x.y",
+    "",
+    "é",
+    "а",
+    "ｘ",
+    "x\u200b",
+    "x\u0000",
+    "x\n",
+    "\u001b[0m",
+    "sin",
+    "atan2",
+    "pi",
+    "t",
+    "nan",
+    "oo",
+    "u_x",
+    "u_",
+    "x" * 33,
+    "../x",
+    "x/y",
+    "x;y",
+    "$x$",
+    "%s",
+    "{x}",
+    "gamma",
+    "eps",
+    "verdict",
+    "m_exact",
+    "excess_x",
+)
 
 
 @pytest.mark.parametrize("table", ["coordinates", "parameters", "keys", "states"])
 def test_a_name_that_would_mean_something_elsewhere_is_refused(table):
     """Python's words, functions, velocities, variables of datasets, paths, escapes, letters that look alike."""
-    allowed = {"states": {"sin", "atan2", "pi", "t", "nan", "oo", "u_x", "u_", "gamma", "eps", "verdict", "m_exact",
-                          "excess_x"}}  # fmt: skip
+    allowed = {
+        "states": {
+            "sin",
+            "atan2",
+            "pi",
+            "t",
+            "nan",
+            "oo",
+            "u_x",
+            "u_",
+            "gamma",
+            "eps",
+            "verdict",
+            "m_exact",
+            "excess_x",
+        }
+    }
     for name in NAMES:
         quoted = json.dumps(name)
         head = f"[{table}.{quoted}]" if table == "states" else f"[{table}]\n{quoted} = "
         body = '\nsentence = "s"\n' if table == "states" else '{ unit = "1", sentence = "s", default = 1 }\n'
         if table == "coordinates":
             body = body.replace(", default = 1", "")
-        text = TEMPLATE.replace(f"[{table}.sliding]" if table == "states" else f"[{table}]\n",
-                                head + body + ("[states.sliding]" if table == "states" else ""))  # fmt: skip
+        text = TEMPLATE.replace(
+            f"[{table}.sliding]" if table == "states" else f"[{table}]\n",
+            head + body + ("[states.sliding]" if table == "states" else ""),
+        )
         if name in allowed.get(table, ()):
             assert read(text).state(name).sentence == "s"
         else:
@@ -174,8 +271,9 @@ HOSTILE = {
     "a rule for no coordinate": TEMPLATE.replace('theta = "omega"', 'psi = "omega"'),
     "a state of no key": TEMPLATE.replace('parameters = { mu = "4/3" }', 'parameters = { nu = "4/3" }'),
     "seven coordinates": TEMPLATE.replace(
-        "[parameters]", "".join(f'x{i} = {{ unit = "m", sentence = "s" }}\n' for i in range(4)) + "[parameters]"),
-}  # fmt: skip
+        "[parameters]", "".join(f'x{i} = {{ unit = "m", sentence = "s" }}\n' for i in range(4)) + "[parameters]"
+    ),
+}
 
 
 @pytest.mark.parametrize("text", HOSTILE.values(), ids=HOSTILE.keys())
@@ -184,8 +282,10 @@ def test_a_hostile_text_is_refused_in_one_line(text):
 
 
 HEAVY = TEMPLATE.replace("kinetic_energy =", "# ").replace(
-    "# M = ", 'M = [["9 + sin(x*y)", "cos(x - theta)", "x"], ["cos(x - theta)", "9 + y", "cos(y - theta)"], '
-    '["x", "cos(y - theta)", "9 + theta"]]\n# ')  # fmt: skip
+    "# M = ",
+    'M = [["9 + sin(x*y)", "cos(x - theta)", "x"], ["cos(x - theta)", "9 + y", "cos(y - theta)"], '
+    '["x", "cos(y - theta)", "9 + theta"]]\n# ',
+)
 
 
 @pytest.mark.parametrize(
@@ -234,11 +334,19 @@ b = 1979-05-27 07:32:00
     tomllib.loads(text)
     lines = field_lines(words_of(text))
     expected = {
-        ("name",): 2, ("friction", "kind"): 3, ("parameters",): 6, ("parameters", "m", "unit"): 7,
-        ("parameters", "l"): 8, ("states", "a b"): 10, ("states", "a b", "keys", "slip"): 11,
+        ("name",): 2,
+        ("friction", "kind"): 3,
+        ("parameters",): 6,
+        ("parameters", "m", "unit"): 7,
+        ("parameters", "l"): 8,
+        ("states", "a b"): 10,
+        ("states", "a b", "keys", "slip"): 11,
         ("states", "a b", "M", 0, 1): 12,
-        ("states", "a b", "M", 1): 13, ("states", "a b", "M", 1, 1): 14, ("list", 0, "a"): 16, ("list", 1, "b"): 18,
-    }  # fmt: skip
+        ("states", "a b", "M", 1): 13,
+        ("states", "a b", "M", 1, 1): 14,
+        ("list", 0, "a"): 16,
+        ("list", 1, "b"): 18,
+    }
     assert {path: lines.get(path) for path in expected} == expected
 
 
@@ -265,14 +373,23 @@ def paths(folder: Path) -> dict[str, str | Path]:
     listener.close()
     names = ["bytes", "nul", "large", "folder", "loop", "link", "pipe", "socket", "missing"]
     found: dict[str, str | Path] = {name: folder / f"{name}.toml" for name in names}
-    return found | {"a device": "/dev/zero", "NUL in the name": "a\0.toml", "an escape": "\x1b[31m.toml",
-                    "a long name": "x" * 5000 + ".toml", "a lone surrogate": "\udc80.toml"}  # fmt: skip
+    return found | {
+        "a device": "/dev/zero",
+        "NUL in the name": "a\0.toml",
+        "an escape": "\x1b[31m.toml",
+        "a long name": "x" * 5000 + ".toml",
+        "a lone surrogate": "\udc80.toml",
+    }
 
 
 WHY = dict.fromkeys(("folder", "link", "pipe", "socket", "a device"), "not a file") | {
-    "bytes": "line 2: the file is not UTF-8", "nul": "not TOML", "large": "larger than", "loop": "symbolic links",
-    "missing": "No such file", "a long name": "too long",
-}  # fmt: skip
+    "bytes": "line 2: the file is not UTF-8",
+    "nul": "not TOML",
+    "large": "larger than",
+    "loop": "symbolic links",
+    "missing": "No such file",
+    "a long name": "too long",
+}
 
 
 def test_what_is_not_a_file_of_text_is_refused_at_once(tmp_path, monkeypatch):

@@ -36,17 +36,24 @@ def random_start(section: str, seed: int, **fixed: float) -> Start:
     """A block: gamma takes both signs, contacts open and close; every fifth has no friction in one direction."""
     random = np.random.default_rng(seed)
     parameters = {
-        "beta": random.uniform(-0.6, 0.6), "c": random.uniform(-0.5, 0.5), "bend": random.uniform(-0.2, 0.2),
-        "mu": random.uniform(0.0, 4.0), "nu": random.uniform(0.0, 3.0) if seed % 5 else 0.0,
-        "angle": random.uniform(-3.0, 3.0), "weight": random.uniform(1.0, 20.0), "drag": random.uniform(0.0, 2.0),
+        "beta": random.uniform(-0.6, 0.6),
+        "c": random.uniform(-0.5, 0.5),
+        "bend": random.uniform(-0.2, 0.2),
+        "mu": random.uniform(0.0, 4.0),
+        "nu": random.uniform(0.0, 3.0) if seed % 5 else 0.0,
+        "angle": random.uniform(-3.0, 3.0),
+        "weight": random.uniform(1.0, 20.0),
+        "drag": random.uniform(0.0, 2.0),
         "beat": random.uniform(-10.0, 10.0),
-    } | fixed  # fmt: skip
+    } | fixed
     q = {"x": random.normal(), "y": random.normal(), "z": random.choice([0.0, random.uniform(0.0, 0.3)])}
     u = {"x": random.normal(0.0, 2.0), "y": random.normal(0.0, 2.0), "z": random.normal(0.0, 0.3)}
     return make_start(
-        space_block(section), q={k: float(x) for k, x in q.items()}, u={k: float(x) for k, x in u.items()},
+        space_block(section),
+        q={k: float(x) for k, x in q.items()},
+        u={k: float(x) for k, x in u.items()},
         parameters={k: float(x) for k, x in parameters.items() if x != 0.0},
-    )  # fmt: skip
+    )
 
 
 def random_rod(seed: int) -> Start:
@@ -108,8 +115,14 @@ def test_the_impulses_are_in_the_tangents_of_the_scene_and_in_its_section(sectio
     B, c, mu, nu, angle = (values[n] for n in ("beta", "c", "mu", "nu", "angle"))
     M = np.linalg.inv([[1.0, 0.0, B], [0.0, 1.0, c], [B, c, 1.0]])
     t, u = found.t[1:], found.u[:-1]
-    f = np.stack([-values["drag"] * u[:, 0] + values["beat"] * np.sin(3 * t), values["beat"] * np.cos(2 * t),
-                  np.full(len(t), -values["weight"])], axis=1)  # fmt: skip
+    f = np.stack(
+        [
+            -values["drag"] * u[:, 0] + values["beat"] * np.sin(3 * t),
+            values["beat"] * np.cos(2 * t),
+            np.full(len(t), -values["weight"]),
+        ],
+        axis=1,
+    )
     expected = (found.u[1:] - u) @ M - h * f  # the momentum along x, y and z; grad g is -z
     np.testing.assert_allclose(found.r[1:], expected[:, [2, 0, 1]], atol=1e-13)
     normal, first, second = found.r.T
@@ -133,8 +146,13 @@ def test_a_contact_takes_energy_and_never_gives_any(scheme: str, section: str) -
         scale = found.contact_quantities()["kinetic_energy"].max() - work[-1]
         assert np.diff(work).max() <= 1e-14 * scale
         taken -= work[-1]
-        idle = simulate(random_start(section, seed, bend=0.0, weight=0.0, drag=0.0, beat=0.0), scheme=scheme,
-                        step=2e-2, until=2.0, monitor=False)  # fmt: skip
+        idle = simulate(
+            random_start(section, seed, bend=0.0, weight=0.0, drag=0.0, beat=0.0),
+            scheme=scheme,
+            step=2e-2,
+            until=2.0,
+            monitor=False,
+        )
         energy = idle.contact_quantities()["kinetic_energy"]
         assert np.diff(energy).max() <= 1e-14 * energy[0]  # M is constant: nothing else changes it
     assert taken > 1.0
@@ -147,8 +165,9 @@ def test_a_rod_in_its_vertical_plane_moves_as_the_rod_in_the_plane(scheme: str, 
     space = simulate(make_state(ROD, state, keys=keys), **options)
     signs = {"slip": sp.Integer(-1) * sp.sympify(int(keys.get("slip", 1)))}
     friction = {"mu": "2" if state == "paradox" else "1/2"}
-    plane = simulate(make_state(load_scene("slender_rod"), keys={"theta": "atan(2)"} | signs, parameters=friction),
-                     **options)  # fmt: skip
+    plane = simulate(
+        make_state(load_scene("slender_rod"), keys={"theta": "atan(2)"} | signs, parameters=friction), **options
+    )
     np.testing.assert_allclose(space.q[:, [0, 2, 3]], plane.q, atol=1e-11)
     np.testing.assert_allclose(space.u[:, [0, 2, 3]], plane.u, atol=1e-11)
     np.testing.assert_allclose(space.r[:, :2], plane.r, atol=1e-11)
@@ -172,18 +191,24 @@ def test_the_azimuth_turns_the_trajectory() -> None:
 
 @pytest.mark.parametrize(
     ("section", "direction", "friction"),
-    [("ellipse", 0.4, 0.3), ("ellipse", 0.4 + math.pi / 2, 0.5), ("kite", 0.0, 0.6),
-     ("kite", math.pi, 0.3), ("kite", math.pi / 2, 0.5)],
-)  # fmt: skip
+    [
+        ("ellipse", 0.4, 0.3),
+        ("ellipse", 0.4 + math.pi / 2, 0.5),
+        ("kite", 0.0, 0.6),
+        ("kite", math.pi, 0.3),
+        ("kite", math.pi / 2, 0.5),
+    ],
+)
 def test_a_sliding_point_mass_stops_after_the_way_of_constant_friction(
     section: str, direction: float, friction: float
 ) -> None:
     gravity, speed = 10.0, 2.0
     start = make_start(
-        space_block(section), q={"x": 0, "y": 0, "z": 0},
+        space_block(section),
+        q={"x": 0, "y": 0, "z": 0},
         u={"x": speed * math.cos(direction), "y": speed * math.sin(direction)},
         parameters={"mu": 0.3, "nu": 0.5, "angle": 0.4, "weight": gravity},
-    )  # fmt: skip
+    )
     way = np.array([math.cos(direction), math.sin(direction)]) * speed**2 / (2 * friction * gravity)
     errors = []
     for h in (1e-3, 1e-4):
@@ -248,9 +273,11 @@ def slip_motion(start: Start) -> Callable[[float, np.ndarray], np.ndarray]:
 
 def test_a_smooth_slide_in_space_converges_with_first_order() -> None:
     start = make_start(
-        ROD, q={"x": 0, "y": 0, "z": "sin(atan(2))", "theta": "atan(2)", "phi": 0}, u={"x": 3, "y": 2, "phi": 1},
+        ROD,
+        q={"x": 0, "y": 0, "z": "sin(atan(2))", "theta": "atan(2)", "phi": 0},
+        u={"x": 3, "y": 2, "phi": 1},
         parameters={"mu": "1/2"},
-    )  # fmt: skip
+    )
     exact = solve_ivp(slip_motion(start), (0.0, 0.25), [*start.q, *start.u], method="DOP853", rtol=1e-12, atol=1e-12)
     for scheme in IN_SPACE:
         errors = []

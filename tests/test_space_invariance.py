@@ -30,8 +30,9 @@ STATES = [  # rational sines, cosines and half-angle tangents
 
 
 def by_centre(section):
-    return make_spatial_rod(name="by_centre", sentence="by its centre", friction=section, friction_parameters=(MU,),
-                            states=())  # fmt: skip
+    return make_spatial_rod(
+        name="by_centre", sentence="by its centre", friction=section, friction_parameters=(MU,), states=()
+    )
 
 
 def by_tip(section):
@@ -42,10 +43,16 @@ def by_tip(section):
     rise = Z.velocity + c * theta_rate
     energy = (x.velocity**2 + y.velocity**2 + rise**2) / 2 + (theta_rate**2 + (c * phi.velocity) ** 2) / 6
     return make_scene(
-        name="by_tip", sentence="by its tip", source="a test", coordinates=(x, y, Z, tau, phi), parameters=(MU,),
-        kinetic_energy=energy, constraint=-Z.symbol, friction=section,
+        name="by_tip",
+        sentence="by its tip",
+        source="a test",
+        coordinates=(x, y, Z, tau, phi),
+        parameters=(MU,),
+        kinetic_energy=energy,
+        constraint=-Z.symbol,
+        friction=section,
         tangential_displacements=(x.symbol - c * sp.cos(phi.symbol), y.symbol - c * sp.sin(phi.symbol)),
-    )  # fmt: skip
+    )
 
 
 def centre_velocity(theta, u):

@@ -33,10 +33,16 @@ def block(inverse, section):
     """A point above the floor z = 0 whose inverse inertia is the given 3 x 3 matrix: G in the order (x, y, z)."""
     x, y, z = (Coordinate(name=n, unit="m", sentence=f"coordinate {n}") for n in "xyz")
     return make_scene(
-        name="block", sentence="a point with any inertia", source="a test", coordinates=(x, y, z), parameters=(),
-        inertia=sp.Matrix(inverse).inv(), constraint=-z.symbol, tangential_displacements=(x.symbol, y.symbol),
+        name="block",
+        sentence="a point with any inertia",
+        source="a test",
+        coordinates=(x, y, z),
+        parameters=(),
+        inertia=sp.Matrix(inverse).inv(),
+        constraint=-z.symbol,
+        tangential_displacements=(x.symbol, y.symbol),
         friction=section,
-    )  # fmt: skip
+    )
 
 
 @cache
@@ -70,8 +76,10 @@ def admitted(section, r_t, r_n):
     """Whether the impulses are in the friction cone; on its boundary, up to rounding."""
     if isinstance(section, Polygon):
         corners = np.array(section.vertices, dtype=float)
-        sides = [(q - p)[0] * (r_t[1] - p[1] * r_n) - (q - p)[1] * (r_t[0] - p[0] * r_n)
-                 for p, q in zip(corners, np.roll(corners, -1, axis=0), strict=True)]  # fmt: skip
+        sides = [
+            (q - p)[0] * (r_t[1] - p[1] * r_n) - (q - p)[1] * (r_t[0] - p[0] * r_n)
+            for p, q in zip(corners, np.roll(corners, -1, axis=0), strict=True)
+        ]
         return (r_n >= 0) & (np.min(sides, axis=0) >= -1e-12)
     E = np.array(section.map.evalf(20), dtype=float)
     return np.linalg.norm(np.linalg.solve(E, r_t), axis=0) <= r_n + 1e-12
@@ -131,14 +139,17 @@ def test_turning_the_tangent_frame_turns_the_limit_set_and_nothing_else(name):
 
 
 def test_polygons_about_the_disc_have_limits_that_close_in_on_its_own():
-    found = [(m, s, limit_set(make_state(block(m, SECTIONS["disc"]), keys={"u_x": s[0], "u_y": s[1]})))
-             for m, s in cases()]  # fmt: skip
+    found = [
+        (m, s, limit_set(make_state(block(m, SECTIONS["disc"]), keys={"u_x": s[0], "u_y": s[1]}))) for m, s in cases()
+    ]
     inverse, slip, limit = next(f for f in found if f[2].reason.endswith("slips on in another direction"))
     disc = limit.u_plus
     errors = []
     for n in (8, 32, 128):
-        corners = tuple((sp.Rational(round(1.5e9 * np.cos(t)), 10**9), sp.Rational(round(1.5e9 * np.sin(t)), 10**9))
-                        for t in 2 * np.pi * (np.arange(n) + 0.3) / n)  # fmt: skip
+        corners = tuple(
+            (sp.Rational(round(1.5e9 * np.cos(t)), 10**9), sp.Rational(round(1.5e9 * np.sin(t)), 10**9))
+            for t in 2 * np.pi * (np.arange(n) + 0.3) / n
+        )
         state = make_state(block(inverse, Polygon(vertices=corners)), keys={"u_x": slip[0], "u_y": slip[1]})
         errors.append(np.linalg.norm(limit_set(state).u_plus - disc))
     assert errors[1] < errors[0] / 8
@@ -161,8 +172,11 @@ def test_the_azimuth_turns_the_jump_and_nothing_else():
     there = limit_set(make_state(rod, "oblique", keys={"phi": "atan(3/4)"}))
     c, s = 0.8, 0.6
     assert there.kind == here.kind == "pair"
-    assert np.allclose(there.jump, [c * here.jump[0] - s * here.jump[1], s * here.jump[0] + c * here.jump[1],
-                                    *here.jump[2:]], atol=1e-14)  # fmt: skip
+    assert np.allclose(
+        there.jump,
+        [c * here.jump[0] - s * here.jump[1], s * here.jump[0] + c * here.jump[1], *here.jump[2:]],
+        atol=1e-14,
+    )
 
 
 def test_at_gamma_zero_a_polygon_with_an_edge_across_b_claims_nothing():

@@ -147,8 +147,9 @@ def test_as_the_slip_turns_parallel_the_constant_stays_and_the_eps_at_which_it_s
         small, large = kappa**2 / 1000.0, kappa**2 * 100.0
         shares = [
             make_member(problem, eps * (1 - 1e-12) * found.dq, eps * (1 - 1e-12) * found.dv).distance[0]
-            / (found.C * np.sqrt(eps)) for eps in (small, large)
-        ]  # fmt: skip
+            / (found.C * np.sqrt(eps))
+            for eps in (small, large)
+        ]
         assert shares[0] == pytest.approx(1.0, rel=1e-3)
         assert shares[1] < 0.1
     assert constants[0] == pytest.approx(constants[1], rel=1e-3)

@@ -191,8 +191,11 @@ def test_without_friction_the_impulse_is_normal_and_no_number_is_undefined():
         assert disc_impulse(4.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0, *v) == (-v[0] / 4.0, 0.0, 0.0, Branch.SLIP)
         point = np.zeros((1, 2))
         assert polygon_impulse(4.0, 0.5, 0.1, 1.0, 0.2, 1.0, point, np.array([4.0]), v[0], 1.0, 2.0) == (
-            -v[0] / 4.0, 0.0, 0.0, Branch.SLIP,
-        )  # fmt: skip
+            -v[0] / 4.0,
+            0.0,
+            0.0,
+            Branch.SLIP,
+        )
 
 
 def test_nothing_happens_where_the_normal_velocity_is_not_outward():

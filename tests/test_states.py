@@ -184,11 +184,16 @@ WRONG = {
     "a symbol": (ROD, PARADOX, {"slip": sp.Symbol("s")}, {}, "expected a number, but 's' contains s"),
     "a true value": (ROD, PARADOX, {"slip": True}, {}, "a truth value is not a number"),
     "negative where it is worn": (
-        WORN, None, {"theta": "atan(2)"}, {"theta_0": 0, "k": -5}, "coefficient of friction is -4.79556 there"),
+        WORN,
+        None,
+        {"theta": "atan(2)"},
+        {"theta_0": 0, "k": -5},
+        "coefficient of friction is -4.79556 there",
+    ),
     "a straight arm": (ARM, None, {"phi1": "1/3", "phi2": "1/3"}, {}, "u_phi1 is not finite at this state"),
     "a table elsewhere": (ARM, PARADOX, {}, {"depth": 1}, r"off the constraint: g\(q\) = 0.946207"),
     "hostile text": (ROD, PARADOX, {"theta": "__import__('os')"}, {}, "state key theta: "),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("scene", "name", "keys", "parameters", "message"), WRONG.values(), ids=WRONG.keys())
@@ -203,10 +208,16 @@ def particle(**changes):
     x, y = (Coordinate(name=n, unit="m", sentence=f"coordinate {n}") for n in ("x", "y"))
     c = Parameter(name="c", unit="1", sentence="a constant", default="1", range="real")
     parts = {
-        "name": "particle", "sentence": "a particle", "source": "a test", "coordinates": (x, y), "parameters": (c,),
-        "inertia": sp.diag(c.symbol, 1), "constraint": -y.symbol, "tangential_displacements": (x.symbol,),
+        "name": "particle",
+        "sentence": "a particle",
+        "source": "a test",
+        "coordinates": (x, y),
+        "parameters": (c,),
+        "inertia": sp.diag(c.symbol, 1),
+        "constraint": -y.symbol,
+        "tangential_displacements": (x.symbol,),
         "friction": Segment(minus=1, plus=1),
-    }  # fmt: skip
+    }
     return make_scene(**(parts | {k: v(x.symbol, y.symbol) for k, v in changes.items()}))
 
 

@@ -136,12 +136,16 @@ def with_a_bool(dataset: xr.Dataset) -> None:
 @pytest.mark.parametrize(
     ("spoil", "named"),
     [
-        (without_units, "number lacks units"), (without_sentence, "number: .* not a sentence"),
-        (without_meanings, "outcome needs flag_values"), (without_not_run, "outcome needs flag_values"),
-        (with_a_strange_code, r"outcome has values without a meaning: \[9\]"), (without_a_commit, "git_commit"),
-        (with_a_dict, "settings"), (with_a_bool, "finished"),
+        (without_units, "number lacks units"),
+        (without_sentence, "number: .* not a sentence"),
+        (without_meanings, "outcome needs flag_values"),
+        (without_not_run, "outcome needs flag_values"),
+        (with_a_strange_code, r"outcome has values without a meaning: \[9\]"),
+        (without_a_commit, "git_commit"),
+        (with_a_dict, "settings"),
+        (with_a_bool, "finished"),
     ],
-)  # fmt: skip
+)
 def test_a_dataset_that_does_not_explain_itself_is_refused_by_name(
     spoil: Callable[[xr.Dataset], None], named: str, tmp_path: Path
 ) -> None:
@@ -180,9 +184,10 @@ def test_asking_whether_a_file_can_be_written_leaves_it_alone(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize(
-    ("name", "content"), [("a", None), (300 * "a", None), ("a", b""), ("a", b"no HDF5 at all")],
+    ("name", "content"),
+    [("a", None), (300 * "a", None), ("a", b""), ("a", b"no HDF5 at all")],
     ids=["missing", "name too long", "empty", "text"],
-)  # fmt: skip
+)
 def test_what_save_did_not_write_is_refused_in_one_line(name: str, content: bytes | None, tmp_path: Path) -> None:
     path = tmp_path / name
     if content is not None:

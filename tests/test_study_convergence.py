@@ -66,9 +66,13 @@ def test_the_enclosure_holds_the_distance_found_between_dense_points(seed: int) 
 
 @pytest.mark.parametrize(
     ("t", "u", "words"),
-    [([0.0], [[1.0]], "n >= 2"), ([0.0, 1.0], [1.0, 2.0], "n >= 2"), ([1.0, 0.0], [[1.0], [2.0]], "decrease"),
-     ([0.0, 1.0], [[math.nan], [2.0]], "NaN")],
-)  # fmt: skip
+    [
+        ([0.0], [[1.0]], "n >= 2"),
+        ([0.0, 1.0], [1.0, 2.0], "n >= 2"),
+        ([1.0, 0.0], [[1.0], [2.0]], "decrease"),
+        ([0.0, 1.0], [[math.nan], [2.0]], "NaN"),
+    ],
+)
 def test_what_is_no_graph_is_refused_in_one_line(t: list, u: list, words: str) -> None:
     with pytest.raises(InputError, match=words):
         velocity_graph(t, u)
@@ -103,8 +107,9 @@ def test_a_reference_that_ends_early_is_refused() -> None:
 def test_the_position_level_scheme_comes_to_rest_on_a_curved_constraint() -> None:
     problem = BY_NAME["arm_stick"]
     for steps in (300, 1369, 3001, 16323):  # of these, some once stopped at rest: rounding is no change of velocity
-        found = simulate(problem.start(), scheme="schatzman_paoli", step=problem.until / steps, until=problem.until,
-                         monitor=False)  # fmt: skip
+        found = simulate(
+            problem.start(), scheme="schatzman_paoli", step=problem.until / steps, until=problem.until, monitor=False
+        )
         assert found.ending.label == "reached_end"
         assert np.abs(found.u[-1]).max() < 1e-9
 
@@ -112,8 +117,9 @@ def test_the_position_level_scheme_comes_to_rest_on_a_curved_constraint() -> Non
 def test_a_method_that_cannot_go_on_is_kept_as_a_failed_run() -> None:
     start = as_start(make_state(load_scene("slender_rod"), "paradox"))
     u = [list(start.u), list(start.u)]
-    problem = replace(BY_NAME["rod_slide"], start=lambda: start, until=0.1,
-                      closed_form=lambda: velocity_graph([0.0, 0.1], u))  # fmt: skip
+    problem = replace(
+        BY_NAME["rod_slide"], start=lambda: start, until=0.1, closed_form=lambda: velocity_graph([0.0, 0.1], u)
+    )
     effort = Effort(most=200, levels=2, phases=1, tolerances=(1e-6,), stiffnesses=(1e3,), instants=10, patience=0.0)
     one = sweep_convergence([problem], effort=effort, command="test").isel(problem=0)
     (run,) = np.flatnonzero(one["run_scheme"].values == "event_driven")

@@ -176,11 +176,19 @@ def test_friction_below_the_critical_one_has_no_singular_point() -> None:
 def test_the_scheme_jams_as_often_as_the_map_says_where_the_map_leaves_out_little() -> None:
     point = singular_point(find_friction(0.5))
     cases = [
-        JamCase(group="test", contact="strict", ratio=0.5, step=1e-6, count=2000,
-                amplitude=point.amplitude_of(1e-6, 1.0)),
-        JamCase(group="test", contact="kept", ratio=0.5, step=1e-6, length=100.0, count=2000,
-                amplitude=point.kept_drift(1e-6, 1.0) / 0.01),
-    ]  # fmt: skip
+        JamCase(
+            group="test", contact="strict", ratio=0.5, step=1e-6, count=2000, amplitude=point.amplitude_of(1e-6, 1.0)
+        ),
+        JamCase(
+            group="test",
+            contact="kept",
+            ratio=0.5,
+            step=1e-6,
+            length=100.0,
+            count=2000,
+            amplitude=point.kept_drift(1e-6, 1.0) / 0.01,
+        ),
+    ]
     found = measure_jam_law(cases, seed=3)
     deviation = np.abs(found["fraction"] - found["local_map"]).values
     assert (found["effective_count"].values > 500).all()

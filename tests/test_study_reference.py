@@ -34,9 +34,14 @@ FACTS = load_facts(ROOT / "data" / "reference" / "facts.toml")
 NUMBERS = [fact for fact in FACTS if fact.kind is not Kind.LABEL]
 HEAD = '[source.a]\nauthors = "A. Author"\nyear = 2000\nread = "abstract"\n\n'
 ENTRY = {
-    "id": '"f"', "statement": '"a sum"', "kind": '"exact"', "value": '"1 + 1"', "basis": '"abstract"', "source": '"a"',
+    "id": '"f"',
+    "statement": '"a sum"',
+    "kind": '"exact"',
+    "value": '"1 + 1"',
+    "basis": '"abstract"',
+    "source": '"a"',
     "says": '"so it is"',
-}  # fmt: skip
+}
 
 
 def entry(**changes: str | None) -> str:
@@ -203,15 +208,18 @@ def test_solutions_of_a_step_are_as_many_as_the_compiled_schemes_count() -> None
 
 def test_regimes_are_those_of_the_map_of_regimes() -> None:
     drawn = map_regimes(
-        load_scene("slender_rod"), axes={"theta": np.linspace(0.2, 1.5, 9), "omega": np.linspace(-5.0, 5.0, 8)},
+        load_scene("slender_rod"),
+        axes={"theta": np.linspace(0.2, 1.5, 9), "omega": np.linspace(-5.0, 5.0, 8)},
         parameters={"mu": 2},
-    )  # fmt: skip
+    )
     meanings = drawn["regime"].attrs["flag_meanings"].split()
     seen = set()
     for p, beta, code in zip(
-        drawn["slip_compliance"].values.flat, drawn["free_acceleration"].values.flat, drawn["regime"].values.flat,
+        drawn["slip_compliance"].values.flat,
+        drawn["free_acceleration"].values.flat,
+        drawn["regime"].values.flat,
         strict=True,
-    ):  # fmt: skip
+    ):
         assert regime(p, beta).replace("-", "_") == meanings[code]
         seen.add(meanings[code])
     assert len(seen) == 4

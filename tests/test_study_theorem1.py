@@ -15,8 +15,12 @@ from painleve.sweep import StudyResult
 
 SCENE_NAMES = load_study("theorem1").SCENES
 UNMAPPED = {f"gamma_map_spatial_rod_ellipse.{suffix}" for suffix in ("h5", "pdf", "png")}  # no one coefficient
-ROOTS = [("spatial_rod", "critical_oblique"), ("spatial_rod", "double_zero"),
-         ("spatial_rod_ellipse", "critical_oblique"), ("spatial_rod_ellipse", "tilted")]  # fmt: skip
+ROOTS = [
+    ("spatial_rod", "critical_oblique"),
+    ("spatial_rod", "double_zero"),
+    ("spatial_rod_ellipse", "critical_oblique"),
+    ("spatial_rod_ellipse", "tilted"),
+]
 STATES = [(scene, state.name) for scene in SCENE_NAMES for state in load_scene(scene).states]
 
 

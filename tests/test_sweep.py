@@ -50,9 +50,10 @@ def test_a_point_of_a_sweep_is_what_the_method_says_there(swept: xr.Dataset) -> 
     point = swept.sel(state="paradox", mu=2.0, eps=1e-2)
     direct = sample_distance(limit_set(make_state(ROD, "paradox")), 1e-2, FEW)
     for name, bounds in (
-        ("excess_Aeps_A", direct.excess_Aeps_A.bounds), ("excess_A_Aeps", direct.excess_A_Aeps.bounds),
+        ("excess_Aeps_A", direct.excess_Aeps_A.bounds),
+        ("excess_A_Aeps", direct.excess_A_Aeps.bounds),
         ("hausdorff", direct.hausdorff),
-    ):  # fmt: skip
+    ):
         for side, value in bounds.as_dict().items():
             np.testing.assert_equal(float(point[f"{name}_{side}"]), math.nan if value is None else value)
     member = direct.excess_Aeps_A.member
@@ -125,13 +126,18 @@ def test_every_kind_of_dataset_explains_itself_and_survives_the_disk(
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        ({"eps": []}, "no values"), ({"eps": [0.0]}, "positive"), ({"eps": [math.nan]}, "positive"),
-        ({"states": ["nowhere"]}, "no state 'nowhere'"), ({"states": ["paradox", "paradox"]}, "named twice"),
-        ({"over": {"nu": ["1"]}}, "no parameter 'nu'"), ({"over": {"mu": []}}, "no values"),
-        ({"over": {"mu": ["__import__('os')"]}}, "mu"), ({"method": "guess"}, "no 'guess'"),
+        ({"eps": []}, "no values"),
+        ({"eps": [0.0]}, "positive"),
+        ({"eps": [math.nan]}, "positive"),
+        ({"states": ["nowhere"]}, "no state 'nowhere'"),
+        ({"states": ["paradox", "paradox"]}, "named twice"),
+        ({"over": {"nu": ["1"]}}, "no parameter 'nu'"),
+        ({"over": {"mu": []}}, "no values"),
+        ({"over": {"mu": ["__import__('os')"]}}, "mu"),
+        ({"method": "guess"}, "no 'guess'"),
         ({"over": {"mu": ["1"]}, "parameters": {"mu": 1}}, "taken"),
     ],
-)  # fmt: skip
+)
 def test_bad_arguments_are_refused_in_one_line_before_anything_runs(arguments: dict, says: str) -> None:
     told: list[str] = []
     with pytest.raises(InputError, match=says) as caught:

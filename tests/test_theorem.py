@@ -42,8 +42,9 @@ BRANCHES = {
 }
 EPS = (1e-2, 1e-4, 1e-6)
 REPRESENTATIVES = [("slender_rod", name) for name in ("sliding", "paradox", "critical", "double_zero")] + [
-    ("worn_tip_rod", "isolated"), ("two_link_arm", "isolated"),
-]  # fmt: skip
+    ("worn_tip_rod", "isolated"),
+    ("two_link_arm", "isolated"),
+]
 
 
 def sampled(limit: LimitSet, eps: float) -> Distance:
@@ -180,15 +181,23 @@ def test_an_isolated_state_just_above_the_threshold_is_not_refuted_by_balls_that
 def made_up(found: Classification, eps: float, forward: Bounds, backward: Bounds, ends: Bounds) -> Evidence:
     def distance(excess: Bounds, other: Bounds) -> Distance:
         return Distance(
-            limit=found.limit, eps=eps, method="made up", excess_Aeps_A=Attained(bounds=excess),
-            excess_A_Aeps=Attained(bounds=other), counts={}, evaluations=0, ending="made up",
-        )  # fmt: skip
+            limit=found.limit,
+            eps=eps,
+            method="made up",
+            excess_Aeps_A=Attained(bounds=excess),
+            excess_A_Aeps=Attained(bounds=other),
+            counts={},
+            evaluations=0,
+            ending="made up",
+        )
 
     known = found.branch is not Branch.CRITICAL_ISOLATED
     return Evidence(
-        eps=eps, distance=distance(forward, backward), ends=distance(ends, Bounds.unknown()),
+        eps=eps,
+        distance=distance(forward, backward),
+        ends=distance(ends, Bounds.unknown()),
         witnessed=1e-4 * eps if known else None,
-    )  # fmt: skip
+    )
 
 
 def verdict_on(state: tuple[str, str], forward, backward, ends=None) -> Status:
@@ -212,7 +221,8 @@ def test_only_enclosures_that_shrink_with_eps_prove(state):
     assert verdict_on(state, Bounds.at_least, nothing) is Status.CONSISTENT
     assert verdict_on(state, lambda e: Bounds.between(e, 0.5), nothing) is Status.CONSISTENT
     assert verdict_on(state, lambda e: Bounds.between(e, 2 * e) if e > 1e-4 else Bounds.at_least(e), nothing) is (
-        Status.CONSISTENT)  # fmt: skip
+        Status.CONSISTENT
+    )
 
 
 @pytest.mark.parametrize("state", POSITIVE_BRANCHES)

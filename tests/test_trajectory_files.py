@@ -210,6 +210,12 @@ def test_an_outline_of_undeclared_symbols_is_refused() -> None:
     ):
         with pytest.raises(InputError, match=r"undeclared symbol \w in the (outline|floor of the outline)"):
             make_scene(
-                name="block", sentence="", source="", coordinates=point.coordinates, parameters=point.parameters,
-                inertia=point.inertia, constraint=point.constraint, outline=outline,
-            )  # fmt: skip
+                name="block",
+                sentence="",
+                source="",
+                coordinates=point.coordinates,
+                parameters=point.parameters,
+                inertia=point.inertia,
+                constraint=point.constraint,
+                outline=outline,
+            )

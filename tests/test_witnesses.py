@@ -23,9 +23,11 @@ from painleve.mechanics.state import make_state
 DIGITS = 110  # more than the 320 bits of the enclosures that are checked
 EPS = [1e-1, 1e-6, 1e-12]
 APPROACHED = [
-    ("slender_rod", "critical"), ("slender_rod", "double_zero"), ("worn_tip_rod", "approached"),
+    ("slender_rod", "critical"),
+    ("slender_rod", "double_zero"),
+    ("worn_tip_rod", "approached"),
     ("two_link_arm", "approached"),
-]  # fmt: skip
+]
 ISOLATED = [("worn_tip_rod", "isolated"), ("two_link_arm", "isolated")]
 PARADOXES = [(scene, "paradox") for scene in SCENE_NAMES]
 FRACTIONS = [1e-3, 0.25, 0.5, 0.9, 0.999]
@@ -183,11 +185,14 @@ def test_where_nothing_is_indeterminate_u_minus_is_its_own_witness():
 @pytest.mark.parametrize(
     ("fraction", "eps", "within", "message"),
     [
-        (-0.1, 0.1, 0.1, "fraction: -0.1 must be between"), (1.1, 0.1, 0.1, "fraction: 1.1 must be between"),
-        (float("nan"), 0.1, 0.1, "fraction: nan must be"), (0.5, 0.0, 0.1, "eps: 0.0 must be a positive number"),
-        (0.5, float("nan"), 0.1, "eps: nan must be"), (0.5, 0.1, -1.0, "within: -1.0 must be a positive number"),
+        (-0.1, 0.1, 0.1, "fraction: -0.1 must be between"),
+        (1.1, 0.1, 0.1, "fraction: 1.1 must be between"),
+        (float("nan"), 0.1, 0.1, "fraction: nan must be"),
+        (0.5, 0.0, 0.1, "eps: 0.0 must be a positive number"),
+        (0.5, float("nan"), 0.1, "eps: nan must be"),
+        (0.5, 0.1, -1.0, "within: -1.0 must be a positive number"),
     ],
-)  # fmt: skip
+)
 def test_a_question_without_sense_is_refused_in_one_line(fraction, eps, within, message):
     with pytest.raises(InputError, match=message):
         find_witness(limit_of("slender_rod", "critical"), fraction, eps, within=within)

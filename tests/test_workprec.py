@@ -75,9 +75,15 @@ def test_a_programming_error_is_not_taken_for_a_failed_run():
 
 @pytest.mark.parametrize(
     ("value", "outcome"),
-    [(1.9, Outcome.DONE), (2.1, Outcome.MISLEADING), (0.51, Outcome.DONE), (0.49, Outcome.MISLEADING),
-     (0.0, Outcome.MISLEADING), (math.nan, Outcome.MISLEADING)],
-)  # fmt: skip
+    [
+        (1.9, Outcome.DONE),
+        (2.1, Outcome.MISLEADING),
+        (0.51, Outcome.DONE),
+        (0.49, Outcome.MISLEADING),
+        (0.0, Outcome.MISLEADING),
+        (math.nan, Outcome.MISLEADING),
+    ],
+)
 def test_a_number_more_than_a_factor_two_off_is_misleading(value, outcome):
     assert measured(value, 1.0).outcome is outcome
 

@@ -90,9 +90,7 @@ def _on_circle(conditions: Conditions, radius: float, angle: np.ndarray) -> np.n
     return conditions(_polar(np.full(angle.shape, radius), angle))
 
 
-def _between(
-    roots: np.ndarray, low: float, high: float, conditions: Conditions
-) -> list[tuple[float, float]]:
+def _between(roots: np.ndarray, low: float, high: float, conditions: Conditions) -> list[tuple[float, float]]:
     """The pieces between consecutive roots on which all conditions hold, joined where they touch."""
     ends = np.unique(np.concatenate([[low], roots, [high]]))
     holds = np.all(conditions(0.5 * (ends[:-1] + ends[1:])) >= 0.0, axis=0)

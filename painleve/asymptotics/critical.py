@@ -114,11 +114,17 @@ def critical_states(
     numerator, note = curve.stationarity()
     extrema = [_extremum(curve, zero) for zero in (curve.zeros(numerator) if numerator is not None else ())]
     return CriticalStates(
-        scene=scene, along=along, low=curve.low, high=curve.high,
+        scene=scene,
+        along=along,
+        low=curve.low,
+        high=curve.high,
         zeros=tuple(sorted((z for z in zeros if z is not None), key=lambda z: z.enclosure.mid())),
-        extrema=tuple(x for x in extrema if x is not None), ends=curve.end_frictions(), outside=tuple(curve.outside),
-        note=note, changing=curve.changing,
-    )  # fmt: skip
+        extrema=tuple(x for x in extrema if x is not None),
+        ends=curve.end_frictions(),
+        outside=tuple(curve.outside),
+        note=note,
+        changing=curve.changing,
+    )
 
 
 # --- zeros of gamma --------------------------------------------------------------------------------------------------
@@ -137,9 +143,15 @@ def _zero_of_gamma(curve: Curve, edge: int, zero: Zero) -> CriticalState | None:
         elif zero.rise > 0:
             kind, reason = Neighbourhood.APPROACHED, "gamma is positive on both sides along touching states"
     return CriticalState(
-        status=zero.status, place=zero.place, enclosure=zero.enclosure, friction=_exact_friction(curve, zero.place),
-        friction_enclosure=curve.friction_at(zero.enclosure), extremum=None, kind=kind, reason=reason,
-    )  # fmt: skip
+        status=zero.status,
+        place=zero.place,
+        enclosure=zero.enclosure,
+        friction=_exact_friction(curve, zero.place),
+        friction_enclosure=curve.friction_at(zero.enclosure),
+        extremum=None,
+        kind=kind,
+        reason=reason,
+    )
 
 
 def _exact_kind(curve: Curve, place: sp.Expr, parameters: Mapping[str, Number]) -> tuple[Neighbourhood, str]:
@@ -182,14 +194,21 @@ def _extremum(curve: Curve, zero: Zero) -> CriticalState | None:
     sense = zero.rise * (1 if coupling > 0 else -1)
     extremum = None
     if zero.status is not Found.UNDECIDED:
-        extremum = Extremum.INFLECTION if zero.multiplicity % 2 == 0 else (
-            Extremum.MINIMUM if sense > 0 else Extremum.MAXIMUM)  # fmt: skip
+        extremum = (
+            Extremum.INFLECTION if zero.multiplicity % 2 == 0 else (Extremum.MINIMUM if sense > 0 else Extremum.MAXIMUM)
+        )
     friction, enclosure = _exact_friction(curve, zero.place), curve.friction_at(zero.enclosure)
     kind, reason = _kind_of_extremum(curve, zero, extremum, friction, enclosure)
     return CriticalState(
-        status=zero.status, place=zero.place, enclosure=zero.enclosure, friction=friction,
-        friction_enclosure=enclosure, extremum=extremum, kind=kind, reason=reason,
-    )  # fmt: skip
+        status=zero.status,
+        place=zero.place,
+        enclosure=zero.enclosure,
+        friction=friction,
+        friction_enclosure=enclosure,
+        extremum=extremum,
+        kind=kind,
+        reason=reason,
+    )
 
 
 def _coefficient(curve: Curve) -> str | None:

@@ -26,9 +26,15 @@ class Curve:
     """The curve's substitution, and the functions of its key whose zeros are sought."""
 
     def __init__(
-        self, scene: Scene, along: str, name: str | None, keys: dict[str, Number], parameters: dict[str, Number],
-        low: Number | None, high: Number | None,
-    ) -> None:  # fmt: skip
+        self,
+        scene: Scene,
+        along: str,
+        name: str | None,
+        keys: dict[str, Number],
+        parameters: dict[str, Number],
+        low: Number | None,
+        high: Number | None,
+    ) -> None:
         if scene.friction is None:
             raise InputError(f"scene {scene.name} has no friction: gamma is positive and mu_c infinite everywhere")
         self.scene, self.along, self.name, self.keys, self.parameters = scene, along, name, keys, parameters
@@ -37,8 +43,11 @@ class Curve:
         self.variable = self.key.symbol
         self.low, self.high = self._interval(low, high)
         self.derivation, self.outside = derive(scene), list[arb]()
-        self.edges = range(1, 1 + len(scene.friction.vertices)) if isinstance(scene.friction, Polygon) else (
-            (1, -1) if isinstance(scene.friction, Segment) else (1,))  # fmt: skip
+        self.edges = (
+            range(1, 1 + len(scene.friction.vertices))
+            if isinstance(scene.friction, Polygon)
+            else ((1, -1) if isinstance(scene.friction, Segment) else (1,))
+        )
         adjugate = scene.inertia.adjugate()
         w = self.derivation.normal
         self.a, self.b = (w.T * adjugate * w)[0, 0], scene.tangents.T * adjugate * w  # times det(M), as the indicator
@@ -61,12 +70,15 @@ class Curve:
 
     def _check_variation(self) -> None:
         if all(self.on(x) == 0 for x in self.b):
-            raise InputError(f"scene {self.scene.name}: mu_c is infinite everywhere along {self.along}: "
-                             "normal and tangent are not coupled")  # fmt: skip
+            raise InputError(
+                f"scene {self.scene.name}: mu_c is infinite everywhere along {self.along}: "
+                "normal and tangent are not coupled"
+            )
         if not any(self.on(self.indicator(edge)).has(self.variable) for edge in self.edges):
             others = ", ".join(k.name for k in self.scene.keys if k.name != self.along)
-            raise InputError(f"scene {self.scene.name}: gamma does not depend on {self.along}; take another key: "
-                             f"{others}")  # fmt: skip
+            raise InputError(
+                f"scene {self.scene.name}: gamma does not depend on {self.along}; take another key: {others}"
+            )
 
     def indicator(self, edge: int) -> sp.Expr:
         return smooth_indicator(self.scene, edge)
@@ -129,5 +141,6 @@ class Curve:
         return tuple(p.name for p in self.scene.parameters if self.on(p.symbol).has(self.variable))
 
     def state(self, place: sp.Expr, parameters: Mapping[str, Number]) -> State:
-        return make_state(self.scene, self.name, keys=self.keys | {self.along: place},
-                          parameters=self.parameters | dict(parameters))  # fmt: skip
+        return make_state(
+            self.scene, self.name, keys=self.keys | {self.along: place}, parameters=self.parameters | dict(parameters)
+        )

@@ -35,9 +35,10 @@ class Applicability(Enum):
 
 
 _VERDICTS = {
-    Status.REFUTED: Applicability.REFUTED, Status.UNDECIDED: Applicability.UNDECIDED,
+    Status.REFUTED: Applicability.REFUTED,
+    Status.UNDECIDED: Applicability.UNDECIDED,
     Status.SUPPORTED: Applicability.SUPPORTED,
-}  # fmt: skip
+}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -56,10 +57,12 @@ class HypothesesCheck:
     def as_dict(self) -> dict[str, object]:
         """For machines."""
         return {
-            "scene": self.state.scene.name, "state": self.state.label, "radius": float(self.radius),
+            "scene": self.state.scene.name,
+            "state": self.state.label,
+            "radius": float(self.radius),
             "hypotheses": {h.name: h.as_dict() for h in self.hypotheses},
             "theorem": {"status": self.theorem.value, "sentence": self.sentence},
-        }  # fmt: skip
+        }
 
 
 def check_hypotheses(state: State, *, radius: Number = DEFAULT_RADIUS) -> HypothesesCheck:

@@ -88,8 +88,10 @@ def _along_ray(state: State, d: Derivation, slip: sp.MatrixBase, edge: int) -> L
     if isinstance(state.scene.friction, Polygon):
         others = [i for i in _extreme_vertices(state, d, state.scene.friction) if i != edge]
         if any(exact_sign(state.exact(d.edge_compliance(i))).sign is not Sign.POSITIVE for i in others):
-            return LeastEnergy(undecided="gamma = 0 on a whole edge of the friction polygon (neither H4 nor "
-                               "H'4 holds): the ray of impulses is not unique, and nothing is claimed")  # fmt: skip
+            return LeastEnergy(
+                undecided="gamma = 0 on a whole edge of the friction polygon (neither H4 nor "
+                "H'4 holds): the ray of impulses is not unique, and nothing is claimed"
+            )
     return _on_ray(state, d, slip, state.exact(d.edge_direction(edge)))
 
 
@@ -168,4 +170,3 @@ def _better(state: State, d: Derivation, slip: sp.MatrixBase, found: list[LeastE
     if difference.sign in (Sign.UNDECIDED, Sign.ZERO):
         return LeastEnergy(undecided="which of the two edges of the wedge is nearer is undecided")
     return jumps[0] if difference.sign is Sign.POSITIVE else jumps[1]
-

@@ -121,9 +121,14 @@ def _projected(state: State) -> LimitSet:
 
 
 def _limit(
-    state: State, kind: Kind, gamma: Signed, edge: Edge, impulse: tuple[sp.Expr, ...] | None, reason: str,
+    state: State,
+    kind: Kind,
+    gamma: Signed,
+    edge: Edge,
+    impulse: tuple[sp.Expr, ...] | None,
+    reason: str,
     after: str = "",
-) -> LimitSet:  # fmt: skip
+) -> LimitSet:
     d, k = derive(state.scene), state.scene.friction_dimension
     u_tilde, exact = state.u, (sp.Integer(0),) * (1 + k)
     if impulse is not None:
@@ -132,6 +137,14 @@ def _limit(
         u_tilde = tuple(u + state.exact(x) for u, x in zip(state.u, jump, strict=True))
     value = 0.0 if gamma.sign is Sign.ZERO else state.number(d.gamma)
     return LimitSet(
-        state=state, kind=kind, gamma=gamma, gamma_value=value, edge=edge, multiplier=exact[0], tangential=exact[1:],
-        u_tilde=u_tilde, reason=reason, after=after,
-    )  # fmt: skip
+        state=state,
+        kind=kind,
+        gamma=gamma,
+        gamma_value=value,
+        edge=edge,
+        multiplier=exact[0],
+        tangential=exact[1:],
+        u_tilde=u_tilde,
+        reason=reason,
+        after=after,
+    )

@@ -207,14 +207,22 @@ def make_local_problem(limit: LimitSet) -> LocalProblem:
         carried[i] = state.number(-derivation.normal[i])
     norm = float(np.linalg.norm(carried))
     return LocalProblem(
-        limit=limit, kernels=kernels, q=_floats(limit, state.q),
-        p=_floats(limit, [state.parameters[s.name] for s in state.scene.parameters]), u=limit.u_minus, base=base,
-        direction=jump / length if length > 0.0 else jump, length=length, impulse=_base_impulse(limit),
+        limit=limit,
+        kernels=kernels,
+        q=_floats(limit, state.q),
+        p=_floats(limit, [state.parameters[s.name] for s in state.scene.parameters]),
+        u=limit.u_minus,
+        base=base,
+        direction=jump / length if length > 0.0 else jump,
+        length=length,
+        impulse=_base_impulse(limit),
         multiplier=state.number(limit.multiplier),
-        critical_edge=limit.edge if limit.critical else 0, carried=norm,
-        carried_direction=carried / norm if norm > 0.0 else carried, powers=powers,
+        critical_edge=limit.edge if limit.critical else 0,
+        carried=norm,
+        carried_direction=carried / norm if norm > 0.0 else carried,
+        powers=powers,
         table=np.array(table).reshape(len(rows.varying), len(powers)),
-    )  # fmt: skip
+    )
 
 
 def _order(variables: int) -> int:

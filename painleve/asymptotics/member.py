@@ -53,9 +53,14 @@ def make_member(
         exact_q, exact_v = _exact(dq), _exact(dv)
         offset, branch = _law(problem, exact_q, exact_v)
         return Member(
-            preimage=(tuple(exact_q), tuple(exact_v)), dq=_rounded(exact_q), dv=_rounded(exact_v), branch=branch,
-            offset=_rounded(offset), distance=_outward(_distance_to_limit(problem, offset)), enclosure=tuple(offset),
-        )  # fmt: skip
+            preimage=(tuple(exact_q), tuple(exact_v)),
+            dq=_rounded(exact_q),
+            dv=_rounded(exact_v),
+            branch=branch,
+            offset=_rounded(offset),
+            distance=_outward(_distance_to_limit(problem, offset)),
+            enclosure=tuple(offset),
+        )
 
 
 def row_balls(problem: LocalProblem, dq: Balls) -> Balls:

@@ -24,11 +24,13 @@ class Method:
     options: type
 
 
-METHODS: Mapping[str, Method] = MappingProxyType({
-    "sample": Method(measure=sample_distance, options=SampleOptions),
-    "optimise": Method(measure=optimise_distance, options=OptimiseOptions),
-    "certify": Method(measure=certify_distance, options=CertifyOptions),
-})  # fmt: skip
+METHODS: Mapping[str, Method] = MappingProxyType(
+    {
+        "sample": Method(measure=sample_distance, options=SampleOptions),
+        "optimise": Method(measure=optimise_distance, options=OptimiseOptions),
+        "certify": Method(measure=certify_distance, options=CertifyOptions),
+    }
+)
 
 
 def find_method(name: str) -> Method:

@@ -63,8 +63,10 @@ def optimise_distance(limit: LimitSet, eps: float, options: OptimiseOptions | No
         return optimise_in_space(limit, eps, starts=options.starts, arithmetic=options.arithmetic)
     problem = make_local_problem(limit)
     if len(problem.shape) > 2:
-        raise InputError(f"optimise: scene {limit.state.scene.name} has {len(problem.shape)} coordinates on which the "
-                         "law depends; at most 2 are searched; use the method sample")  # fmt: skip
+        raise InputError(
+            f"optimise: scene {limit.state.scene.name} has {len(problem.shape)} coordinates on which the "
+            "law depends; at most 2 are searched; use the method sample"
+        )
     expansion = problem.expansion(eps, options.arithmetic)
     differences = partial(problem.differences, eps, expansion)
     search = Search(problem, eps, KINDS[limit.kind], differences, starts=options.starts)
@@ -77,13 +79,21 @@ def optimise_distance(limit: LimitSet, eps: float, options: OptimiseOptions | No
         f"{member.branch.label if member else 'free'}; its bound is the distance of that member; e(A, A_eps): {how}"
     )
     return Distance(
-        limit=limit, eps=eps, method="optimise", excess_Aeps_A=forward, excess_A_Aeps=backward,
-        counts=dict(search.counts), evaluations=evaluations, ending=ending,
+        limit=limit,
+        eps=eps,
+        method="optimise",
+        excess_Aeps_A=forward,
+        excess_A_Aeps=backward,
+        counts=dict(search.counts),
+        evaluations=evaluations,
+        ending=ending,
         settings={
-            "estimate": estimate, "estimated_error": error, "starts": options.starts,
+            "estimate": estimate,
+            "estimated_error": error,
+            "starts": options.starts,
             "arithmetic": f"taylor, order {expansion.order}" if expansion else "plain",
         },
-    )  # fmt: skip
+    )
 
 
 def _excess_of_members(search: Search) -> tuple[Attained, float, float]:

@@ -79,9 +79,14 @@ class Rate:
     def as_dict(self) -> dict[str, object]:
         form = None if self.closed_form is None else str(self.closed_form)
         return {
-            "C": self.C, "power": self.power, "closed_form": form, "part": self.part, "dq": self.dq.tolist(),
-            "dv": self.dv.tolist(), "sentence": self.sentence,
-        }  # fmt: skip
+            "C": self.C,
+            "power": self.power,
+            "closed_form": form,
+            "part": self.part,
+            "dq": self.dq.tolist(),
+            "dv": self.dv.tolist(),
+            "sentence": self.sentence,
+        }
 
 
 def rate(limit: LimitSet) -> Rate:
@@ -101,8 +106,10 @@ def rate(limit: LimitSet) -> Rate:
         return _in_space(limit, isolated)
     problem = make_local_problem(limit)
     if len(problem.shape) > 2:
-        raise InputError(f"rate: scene {limit.state.scene.name} has {len(problem.shape)} coordinates on which the law "
-                         "depends; at most 2 are searched")  # fmt: skip
+        raise InputError(
+            f"rate: scene {limit.state.scene.name} has {len(problem.shape)} coordinates on which the law "
+            "depends; at most 2 are searched"
+        )
     search = _FirstOrder(problem, isolated)
     found = search.best(search.branches, search.kind)
     sentence = _sentence(limit, isolated)
@@ -111,17 +118,26 @@ def rate(limit: LimitSet) -> Rate:
         dq, dv = np.zeros(problem.dimension), away / np.linalg.norm(away)
         return Rate(limit=limit, C=1.0, part="free", dq=dq, dv=dv, sentence=sentence)
     return Rate(
-        limit=limit, C=found.value, part=_part(limit, found), dq=_unit_offset(problem, found),
-        dv=found.dv, sentence=sentence,
-    )  # fmt: skip
+        limit=limit,
+        C=found.value,
+        part=_part(limit, found),
+        dq=_unit_offset(problem, found),
+        dv=found.dv,
+        sentence=sentence,
+    )
 
 
 def _in_space(limit: LimitSet, isolated: bool) -> Rate:
     root = root_rate(limit, isolated)
     return Rate(
-        limit=limit, C=root.C, part="beside the end u_tilde of the segment", dq=root.dq, dv=root.dv, power=0.5,
+        limit=limit,
+        C=root.C,
+        part="beside the end u_tilde of the segment",
+        dq=root.dq,
+        dv=root.dv,
+        power=0.5,
         sentence=_sentence(limit, isolated).replace("eps + o(eps)", "sqrt(eps) + o(sqrt(eps))"),
-    )  # fmt: skip
+    )
 
 
 class _FirstOrder(Search):
@@ -191,8 +207,10 @@ def _parallel(limit: LimitSet) -> bool:
     for i, j in combinations(range(len(grads[0])), 2):
         minor = exact_sign(grads[0][i] * grads[1][j] - grads[0][j] * grads[1][i])
         if minor.sign is Sign.UNDECIDED:
-            raise InputError(f"state {limit.state.label}: no rate while it is undecided whether grad gamma is parallel "
-                             f"to grad g: {minor.reason}")  # fmt: skip
+            raise InputError(
+                f"state {limit.state.label}: no rate while it is undecided whether grad gamma is parallel "
+                f"to grad g: {minor.reason}"
+            )
         if minor.sign is not Sign.ZERO:
             return False
     return True

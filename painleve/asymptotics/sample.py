@@ -95,20 +95,44 @@ class _Stream:
         e = self.expansion
         self.polynomials = e.polynomials if e else no_polynomials()
         self.points = (
-            kronecker_generators(shape + d), kronecker_shifts(options.seed, shape + d), float(eps), problem.carried,
-            self.q_uniforms, e is not None, self.polynomials,
-        )  # fmt: skip
+            kronecker_generators(shape + d),
+            kronecker_shifts(options.seed, shape + d),
+            float(eps),
+            problem.carried,
+            self.q_uniforms,
+            e is not None,
+            self.polynomials,
+        )
         self.law = (
-            problem.q, problem.p, problem.base, problem.u, problem.direction, problem.length, problem.impulse,
-            problem.multiplier, problem.critical_edge,
-        )  # fmt: skip
+            problem.q,
+            problem.p,
+            problem.base,
+            problem.u,
+            problem.direction,
+            problem.length,
+            problem.impulse,
+            problem.multiplier,
+            problem.critical_edge,
+        )
 
     def lane(self, first: int, blocks: int) -> _Tally:
         tally, o, p = _Tally(), self.options, self.problem
         p.kernels.sample_lane(
-            first, blocks, o.samples, self.code, o.seed, *self.points, *self.law, KINDS[p.limit.kind],
-            self.uniform_rows, tally.counts, tally.best, tally.best_index, tally.bins, tally.bin_index,
-        )  # fmt: skip
+            first,
+            blocks,
+            o.samples,
+            self.code,
+            o.seed,
+            *self.points,
+            *self.law,
+            KINDS[p.limit.kind],
+            self.uniform_rows,
+            tally.counts,
+            tally.best,
+            tally.best_index,
+            tally.bins,
+            tally.bin_index,
+        )
         return tally
 
     def block(self, start: int) -> tuple[np.ndarray, ...]:
@@ -122,9 +146,22 @@ class _Stream:
         values = np.empty((len(self.problem.table), BLOCK))
         branch, along, beyond, across2 = np.empty(BLOCK, np.int64), *(np.empty(BLOCK) for _ in range(3))
         self.problem.kernels.offset_block(
-            self.code, self.options.seed, start, *self.points, *self.law,
-            x, dv, room, uniforms, monomials, values, branch, along, beyond, across2,
-        )  # fmt: skip
+            self.code,
+            self.options.seed,
+            start,
+            *self.points,
+            *self.law,
+            x,
+            dv,
+            room,
+            uniforms,
+            monomials,
+            values,
+            branch,
+            along,
+            beyond,
+            across2,
+        )
         dq = np.zeros((d, BLOCK))
         dq[list(self.problem.shape)] = x[:shape]
         if self.problem.carried > 0.0:
@@ -169,15 +206,21 @@ def sample_distance(limit: LimitSet, eps: float, options: SampleOptions | None =
     farthest = stream.member(int(tally.best_index[0]))
     counts = {b.label: int(tally.counts[b]) for b in Branch if _has(problem, b)}
     return Distance(
-        limit=limit, eps=eps, method="sample", counts=counts, evaluations=options.samples,
+        limit=limit,
+        eps=eps,
+        method="sample",
+        counts=counts,
+        evaluations=options.samples,
         excess_Aeps_A=Attained(bounds=Bounds.at_least(farthest.distance[0]), member=farthest),
         excess_A_Aeps=_excess_of_limit(stream, tally),
         ending=f"all {options.samples} samples were drawn",
         settings={
-            "samples": options.samples, "seed": options.seed, "sampler": options.sampler,
+            "samples": options.samples,
+            "seed": options.seed,
+            "sampler": options.sampler,
             "arithmetic": f"taylor, order {stream.expansion.order}" if stream.expansion else "plain",
         },
-    )  # fmt: skip
+    )
 
 
 def sample_members(limit: LimitSet, eps: float, options: SampleOptions | None = None) -> dict[str, np.ndarray]:

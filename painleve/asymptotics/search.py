@@ -43,9 +43,15 @@ class Search:
     """The ball around one state, in units of its radius."""
 
     def __init__(
-        self, problem: LocalProblem, eps: float, kind: int, differences: Callable[[np.ndarray], np.ndarray],
-        *, base: np.ndarray | None = None, starts: int = 4,
-    ) -> None:  # fmt: skip
+        self,
+        problem: LocalProblem,
+        eps: float,
+        kind: int,
+        differences: Callable[[np.ndarray], np.ndarray],
+        *,
+        base: np.ndarray | None = None,
+        starts: int = 4,
+    ) -> None:
         """`differences`: rows minus their base values (R, n) at the shape offsets eps x, x (s, n); kind: of the limit
         set (painleve.core.reduce); starts: how many of the grid's best places are refined."""
         self.problem, self.eps, self.kind, self.differences = problem, eps, kind, differences
@@ -88,9 +94,22 @@ class Search:
         value, dv, impulse = np.empty(n), np.zeros((p.dimension, n)), np.empty(n)
         share = np.ascontiguousarray(box[-1][known]) if branch in SLIPS else np.zeros(n)
         branch_excesses(
-            int(branch), kind, self.base, self.differences(x[:, known]), share, self.eps, p.u, p.direction, p.length,
-            p.impulse, p.multiplier, p.critical_edge, value, dv, impulse,
-        )  # fmt: skip
+            int(branch),
+            kind,
+            self.base,
+            self.differences(x[:, known]),
+            share,
+            self.eps,
+            p.u,
+            p.direction,
+            p.length,
+            p.impulse,
+            p.multiplier,
+            p.critical_edge,
+            value,
+            dv,
+            impulse,
+        )
         self.counts[branch.label] += n
         all_values = np.full(box.shape[1], -np.inf)
         all_values[known] = np.where(value == -1.0, -np.inf, value) if kind != REACH else value
@@ -117,9 +136,13 @@ class Search:
         again = self._refine(branch, chart, top[:-1], 1e-3 if size else 0.0, kind)
         value, x, dv, impulse = self.values(branch, chart, again[:-1], kind)
         return Found(
-            value=float(value[0]), branch=branch, x=x[:, 0], dv=dv[:, 0], impulse=float(impulse[0]),
+            value=float(value[0]),
+            branch=branch,
+            x=x[:, 0],
+            dv=dv[:, 0],
+            impulse=float(impulse[0]),
             error=abs(float(again[-1, 0] - top[-1, 0])),
-        )  # fmt: skip
+        )
 
     def _refine(self, branch: Branch, chart: Chart, places: np.ndarray, step: float, kind: int) -> np.ndarray:
         """Move each place to the best point of a stencil, which grows on a slope and shrinks at a top."""

@@ -162,8 +162,10 @@ def _status(classification: Classification, evidence: Sequence[Evidence], rate: 
     if rate is None:
         return Status.UNDECIDED, "distances at two values of eps at least are needed"
     if rate < _least_slope(classification):
-        return Status.UNDECIDED, (f"members of A_eps have not come nearer at these eps (eps^{rate:.2f}): "
-                                  "smaller ones are needed, or they stay away")  # fmt: skip
+        return Status.UNDECIDED, (
+            f"members of A_eps have not come nearer at these eps (eps^{rate:.2f}): "
+            "smaller ones are needed, or they stay away"
+        )
     if classification.branch is Branch.CRITICAL_ISOLATED:
         return _isolated_status(classification, evidence)
     missing = [e.eps for e in evidence if e.witnessed is None]
@@ -194,8 +196,10 @@ def _isolated_status(classification: Classification, evidence: Sequence[Evidence
     if backward.upper is None and backward.lower is None:
         return Status.UNDECIDED, "nothing is known of e(A, A_eps)"
     if backward.upper is not None and backward.upper < half / 2.0:
-        return Status.UNDECIDED, (f"at eps = {last.eps:g} all of A is still within {backward.upper:.3g} of A_eps: "
-                                  "smaller ones are needed, or q is not isolated")  # fmt: skip
+        return Status.UNDECIDED, (
+            f"at eps = {last.eps:g} all of A is still within {backward.upper:.3g} of A_eps: "
+            "smaller ones are needed, or q is not isolated"
+        )
     if _enclosed(classification, evidence) and all(_middle_is_away(half, e) for e in evidence):
         return Status.PROVED, f"enclosures at every eps: A_eps tends to the ends of A, the middle stays {half:.6g} away"
     return Status.CONSISTENT, f"members near the ends of A only are found; the middle of A is {half:.6g} away from them"

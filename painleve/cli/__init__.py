@@ -27,8 +27,20 @@ from painleve.errors import InputError
 __all__ = ["main"]
 
 COMMANDS = (
-    scenes, new_scene, derive, check, classify, critical, distance, rate, sweep, study, plot, simulate, ensemble,
-)  # fmt: skip
+    scenes,
+    new_scene,
+    derive,
+    check,
+    classify,
+    critical,
+    distance,
+    rate,
+    sweep,
+    study,
+    plot,
+    simulate,
+    ensemble,
+)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -63,9 +75,10 @@ def _complain(message: str) -> int:
 
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(
-        prog="painleve", description="Painlevé paradoxes: derive scenes, decide Theorem 1, measure A_eps against A.",
+        prog="painleve",
+        description="Painlevé paradoxes: derive scenes, decide Theorem 1, measure A_eps against A.",
         epilog="example: painleve classify slender_rod --state paradox",
-    )  # fmt: skip
+    )
     parser.add_argument("--version", action="version", version=_version())
     commands = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=_Parser)
     for command in COMMANDS:

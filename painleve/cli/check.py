@@ -16,15 +16,20 @@ WIDTH = 118
 
 def register(commands: Any) -> None:
     parser = add_command(
-        commands, "check", run, sentence="check the hypotheses (H1) to (H4) of Theorem 1 near a state, or near each "
-        "named state", example="painleve check slender_rod --state paradox --radius 1/10",
-    )  # fmt: skip
+        commands,
+        "check",
+        run,
+        sentence="check the hypotheses (H1) to (H4) of Theorem 1 near a state, or near each named state",
+        example="painleve check slender_rod --state paradox --radius 1/10",
+    )
     add_scene(parser)
     add_state(parser)
     parser.add_argument(
-        "--radius", default=None, metavar="R",
+        "--radius",
+        default=None,
+        metavar="R",
         help="of the ball around the state, an exact number (default 1/10), in the scene's units",
-    )  # fmt: skip
+    )
     add_json(parser)
 
 

@@ -10,9 +10,12 @@ from painleve.cli.common import add_command, add_json, add_scene, add_state, pri
 
 def register(commands: Any) -> None:
     parser = add_command(
-        commands, "classify", run, sentence="decide in exact arithmetic which branch of Theorem 1 holds at a state",
+        commands,
+        "classify",
+        run,
+        sentence="decide in exact arithmetic which branch of Theorem 1 holds at a state",
         example="painleve classify slender_rod --state theta='atan(2)' slip=-1 --set mu=4/3",
-    )  # fmt: skip
+    )
     add_scene(parser)
     add_state(parser)
     add_json(parser)

@@ -41,20 +41,33 @@ def add_command(
 
 
 def add_scene(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("scene", metavar="SCENE", help="a scene of the library (`painleve scenes` lists them), or "
-                        "a file of your own, FILE.toml (`painleve new-scene` writes one)")
+    parser.add_argument(
+        "scene",
+        metavar="SCENE",
+        help="a scene of the library (`painleve scenes` lists them), or "
+        "a file of your own, FILE.toml (`painleve new-scene` writes one)",
+    )
 
 
 def add_state(parser: argparse.ArgumentParser) -> None:
     """--state and --set, each with one or more values."""
     parser.add_argument(
-        "--state", nargs="+", action="extend", default=[], metavar="NAME|KEY=EXPR",
+        "--state",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="NAME|KEY=EXPR",
         help="a named state, or exact keys such as theta='atan(2)' slip=-1; keys after a name override it",
-    )  # fmt: skip
+    )
     parser.add_argument(
-        "--set", nargs="+", action="extend", default=[], metavar="PARAM=EXPR", dest="parameters",
+        "--set",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="PARAM=EXPR",
+        dest="parameters",
         help="exact values of parameters, such as mu=4/3",
-    )  # fmt: skip
+    )
 
 
 def add_json(parser: argparse.ArgumentParser) -> None:
@@ -81,8 +94,11 @@ def _note_degrees(scene: Scene, given: Mapping[str, str]) -> None:
 
     for key in scene.keys:
         if key.unit == "rad" and key.name in given and abs(parse_number(given[key.name], where=key.name)) > 2 * math.pi:
-            print(f"painleve: note: {key.name} = {given[key.name]} is in radians, more than a full turn; "
-                  "degrees are written such as 60*pi/180", file=sys.stderr)  # fmt: skip
+            print(
+                f"painleve: note: {key.name} = {given[key.name]} is in radians, more than a full turn; "
+                "degrees are written such as 60*pi/180",
+                file=sys.stderr,
+            )
 
 
 def read_state_words(options: argparse.Namespace, scene: Scene) -> tuple[list[str], dict[str, str], dict[str, str]]:

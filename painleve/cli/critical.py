@@ -18,9 +18,12 @@ LONG = 60  # characters of a closed form that is printed for a person
 
 def register(commands: Any) -> None:
     parser = add_command(
-        commands, "critical", run, sentence="list the critical states along a curve and the extrema of mu_c",
+        commands,
+        "critical",
+        run,
+        sentence="list the critical states along a curve and the extrema of mu_c",
         example="painleve critical slender_rod --along theta --set mu=2",
-    )  # fmt: skip
+    )
     add_scene(parser)
     parser.add_argument("--along", required=True, metavar="KEY", help="the state key that varies; the others are fixed")
     parser.add_argument("--from", dest="low", metavar="EXPR", help="where it begins (default: the key's interval)")
@@ -40,9 +43,14 @@ def run(options: argparse.Namespace) -> int:
         raise InputError(f"--state: {' and '.join(names)} are two names; give one, then KEY=EXPR to change it")
     parameters = assignments(options.parameters, "--set")
     found = critical_states(
-        scene, options.along, low=options.low, high=options.high, name=names[0] if names else None, keys=keys,
+        scene,
+        options.along,
+        low=options.low,
+        high=options.high,
+        name=names[0] if names else None,
+        keys=keys,
         parameters=parameters,
-    )  # fmt: skip
+    )
     if options.json:
         print_json(as_dict(found))
     else:
@@ -54,23 +62,34 @@ def as_dict(found: CriticalStates) -> dict[str, object]:
     """For machines: numbers as they are enclosed, closed forms as text."""
     least = found.least
     return {
-        "scene": found.scene.name, "along": found.along, "from": str(found.low), "to": str(found.high),
-        "zeros": [_entry(x) for x in found.zeros], "extrema": [_entry(x) for x in found.extrema],
+        "scene": found.scene.name,
+        "along": found.along,
+        "from": str(found.low),
+        "to": str(found.high),
+        "zeros": [_entry(x) for x in found.zeros],
+        "extrema": [_entry(x) for x in found.extrema],
         "least": None if least is None else _entry(least),
-        "ends": [_number(x) for x in found.ends], "outside": [_ends(x) for x in found.outside],
-        "changing": list(found.changing), "note": found.note,
+        "ends": [_number(x) for x in found.ends],
+        "outside": [_ends(x) for x in found.outside],
+        "changing": list(found.changing),
+        "note": found.note,
         "status": "all found" if not found.unresolved else "some intervals are undecided",
-    }  # fmt: skip
+    }
 
 
 def _entry(x: CriticalState) -> dict[str, object]:
     return {
-        "status": x.status.value, "value": _number(x.enclosure), "enclosure": _ends(x.enclosure),
+        "status": x.status.value,
+        "value": _number(x.enclosure),
+        "enclosure": _ends(x.enclosure),
         "exact": None if x.place is None else str(x.place),
-        "critical_friction": _number(x.friction_enclosure), "critical_friction_enclosure": _ends(x.friction_enclosure),
+        "critical_friction": _number(x.friction_enclosure),
+        "critical_friction_enclosure": _ends(x.friction_enclosure),
         "critical_friction_exact": None if x.friction is None else str(x.friction),
-        "extremum": None if x.extremum is None else x.extremum.value, "kind": x.kind.value, "reason": x.reason,
-    }  # fmt: skip
+        "extremum": None if x.extremum is None else x.extremum.value,
+        "kind": x.kind.value,
+        "reason": x.reason,
+    }
 
 
 def _number(x: arb) -> float:
@@ -97,8 +116,10 @@ def _text(found: CriticalStates) -> list[str]:
 
 def _line(found: CriticalStates, x: CriticalState) -> str:
     what = f"{x.extremum.value}, " if x.extremum is not None else ""
-    return (f"  {found.along} = {_value(x.place, x.enclosure)}  mu_c = {_value(x.friction, x.friction_enclosure)}\n"
-            f"      {what}{x.status.value}, {x.kind.value}: {x.reason}")  # fmt: skip
+    return (
+        f"  {found.along} = {_value(x.place, x.enclosure)}  mu_c = {_value(x.friction, x.friction_enclosure)}\n"
+        f"      {what}{x.status.value}, {x.kind.value}: {x.reason}"
+    )
 
 
 def _value(exact: object, enclosure: arb) -> str:
@@ -117,5 +138,7 @@ def _conclusion(found: CriticalStates) -> str:
     if found.least is None:
         return proof
     least = found.least
-    return (f"least friction of a paradox on this curve: {_value(least.friction, least.friction_enclosure)}, "
-            f"at {found.along} = {_value(least.place, least.enclosure)}; {proof}")  # fmt: skip
+    return (
+        f"least friction of a paradox on this curve: {_value(least.friction, least.friction_enclosure)}, "
+        f"at {found.along} = {_value(least.place, least.enclosure)}; {proof}"
+    )

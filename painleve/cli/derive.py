@@ -10,9 +10,12 @@ from painleve.cli.common import add_command, add_json, add_scene, print_json
 
 def register(commands: Any) -> None:
     parser = add_command(
-        commands, "derive", run, sentence="print M, g, n, the friction section, gamma and mu_c of a scene",
+        commands,
+        "derive",
+        run,
+        sentence="print M, g, n, the friction section, gamma and mu_c of a scene",
         example="painleve derive slender_rod --latex",
-    )  # fmt: skip
+    )
     add_scene(parser)
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--latex", action="store_true", help="print LaTeX")

@@ -14,9 +14,12 @@ if TYPE_CHECKING:
 
 def register(commands: Any) -> None:
     parser = add_command(
-        commands, "distance", run, sentence="bound the distances between A_eps and its limit set at a state",
+        commands,
+        "distance",
+        run,
+        sentence="bound the distances between A_eps and its limit set at a state",
         example="painleve distance slender_rod --state critical --eps 1e-3 --samples 1e6",
-    )  # fmt: skip
+    )
     add_scene(parser)
     add_state(parser)
     parser.add_argument("--eps", type=real, required=True, metavar="E", help="radius of the balls around q and u-")
@@ -51,8 +54,10 @@ def _print(found: Distance, witnessed: float | None) -> None:
         print(f"  {name:12} {attained.bounds}")
         if attained.member is not None:
             member = attained.member
-            print(f"  {'':12} by a member that is {member.branch.label}, dq = {_vector(member.dq)}, "
-                  f"dv = {_vector(member.dv)}")  # fmt: skip
+            print(
+                f"  {'':12} by a member that is {member.branch.label}, dq = {_vector(member.dq)}, "
+                f"dv = {_vector(member.dv)}"
+            )
     if witnessed is None:
         print(f"  {'':12} no witnesses: none were found that shadow all of A")
     else:

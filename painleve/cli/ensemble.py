@@ -11,9 +11,12 @@ from painleve.cli.motion import add_motion, read_options, read_start
 
 def register(commands: Any) -> None:
     parser = add_command(
-        commands, "ensemble", run, sentence="count how trajectories end that differ in step size or initial state",
+        commands,
+        "ensemble",
+        run,
+        sentence="count how trajectories end that differ in step size or initial state",
         example="painleve ensemble slender_rod --state stoss --step 1e-4 --spread 1 --count 1000 --until 1",
-    )  # fmt: skip
+    )
     add_motion(parser)
     parser.add_argument("--count", type=count, required=True, metavar="N", help="number of trajectories")
     spread = parser.add_mutually_exclusive_group(required=True)
@@ -32,11 +35,20 @@ def run(options: argparse.Namespace) -> int:
 
     with tqdm(total=options.count, unit=" trajectories", leave=False, delay=1.0, disable=None) as bar:
         found = run_ensemble(
-            read_start(options), scheme=options.scheme, step=options.step, until=options.until, count=options.count,
-            spread=options.spread, window=options.window, ball=options.ball, seed=options.seed,
-            threads=options.threads, contact_tolerance=options.contact_tolerance, options=read_options(options),
+            read_start(options),
+            scheme=options.scheme,
+            step=options.step,
+            until=options.until,
+            count=options.count,
+            spread=options.spread,
+            window=options.window,
+            ball=options.ball,
+            seed=options.seed,
+            threads=options.threads,
+            contact_tolerance=options.contact_tolerance,
+            options=read_options(options),
             progress=bar.update,
-        )  # fmt: skip
+        )
     facts = found.as_dict()
     if options.json:
         print_json(facts)
@@ -45,8 +57,10 @@ def run(options: argparse.Namespace) -> int:
     for outcome, number in found.counts.items():
         if number:
             low, high = found.interval(outcome)
-            print(f"  {outcome.label:12} {found.fraction(outcome):.4f} of them; "
-                  f"95% interval of the probability [{low:.4f}, {high:.4f}]")  # fmt: skip
+            print(
+                f"  {outcome.label:12} {found.fraction(outcome):.4f} of them; "
+                f"95% interval of the probability [{low:.4f}, {high:.4f}]"
+            )
     if found.jump_time is not None:
         print("  jump time    min {:.9g}, median {:.9g}, max {:.9g} s".format(*found.jump_time))
     return 0

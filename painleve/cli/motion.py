@@ -22,12 +22,28 @@ def add_motion(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(
             f"--{name}", nargs="+", action="extend", default=[], metavar="NAME=EXPR", help=f"start from these {what}"
         )
-    parser.add_argument("--scheme", default="contact_dynamics", metavar="NAME", help="default contact_dynamics, "
-                        "the paper's; a wrong name lists them all")  # fmt: skip
-    parser.add_argument("--option", nargs="+", action="extend", default=[], metavar="NAME=NUMBER",
-                        dest="scheme_options", help="options of the scheme, such as theta=1/2")  # fmt: skip
-    parser.add_argument("--contact-tolerance", type=real, default=0.0, metavar="D", help="contact where g >= -D "
-                        "(default 0, the paper's strict test)")  # fmt: skip
+    parser.add_argument(
+        "--scheme",
+        default="contact_dynamics",
+        metavar="NAME",
+        help="default contact_dynamics, the paper's; a wrong name lists them all",
+    )
+    parser.add_argument(
+        "--option",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="NAME=NUMBER",
+        dest="scheme_options",
+        help="options of the scheme, such as theta=1/2",
+    )
+    parser.add_argument(
+        "--contact-tolerance",
+        type=real,
+        default=0.0,
+        metavar="D",
+        help="contact where g >= -D (default 0, the paper's strict test)",
+    )
     parser.add_argument("--step", type=real, required=True, metavar="H", help="step size [s]")
     parser.add_argument("--until", type=real, required=True, metavar="T", help="final time [s]")
 

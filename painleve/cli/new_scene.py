@@ -12,9 +12,12 @@ from painleve.errors import InputError
 
 def register(commands: Any) -> None:
     parser = add_command(
-        commands, "new-scene", run, sentence="write a commented scene file, which works as it stands, to change",
+        commands,
+        "new-scene",
+        run,
+        sentence="write a commented scene file, which works as it stands, to change",
         example="painleve new-scene my_scene",
-    )  # fmt: skip
+    )
     parser.add_argument("name", metavar="NAME", help="name of the scene: letters, digits and _")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="a .toml file (default: NAME.toml)")
     add_json(parser)

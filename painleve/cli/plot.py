@@ -14,14 +14,20 @@ if TYPE_CHECKING:
 
 def register(commands: Any) -> None:
     parser = add_command(
-        commands, "plot", run, sentence="draw the figure of a dataset that sweep, simulate or a study wrote",
+        commands,
+        "plot",
+        run,
+        sentence="draw the figure of a dataset that sweep, simulate or a study wrote",
         example="painleve plot sweep.h5 -o sweep.pdf",
-    )  # fmt: skip
+    )
     parser.add_argument("file", type=Path, metavar="FILE", help="the HDF5 file")
     parser.add_argument(
-        "-o", "--output", type=Path, metavar="FIGURE",
+        "-o",
+        "--output",
+        type=Path,
+        metavar="FIGURE",
         help="a .pdf, .png or .svg file (default: FILE with .png); with --animate a .gif",
-    )  # fmt: skip
+    )
     parser.add_argument("--animate", action="store_true", help="write the motion of a trajectory as a .gif")
     add_json(parser)
 

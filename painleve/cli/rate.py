@@ -13,9 +13,12 @@ if TYPE_CHECKING:
 
 def register(commands: Any) -> None:
     parser = add_command(
-        commands, "rate", run, sentence="the rate of Theorem 1 from first derivatives: C in d_H = C eps + o(eps)",
+        commands,
+        "rate",
+        run,
+        sentence="the rate of Theorem 1 from first derivatives: C in d_H = C eps + o(eps)",
         example="painleve rate slender_rod --state paradox",
-    )  # fmt: skip
+    )
     add_scene(parser)
     add_state(parser)
     add_json(parser)

@@ -10,11 +10,15 @@ from painleve.cli.common import add_command, add_json, print_json
 
 def register(commands: Any) -> None:
     parser = add_command(
-        commands, "scenes", run, sentence="list the scenes with their keys, parameters and named states",
+        commands,
+        "scenes",
+        run,
+        sentence="list the scenes with their keys, parameters and named states",
         example="painleve scenes",
-    )  # fmt: skip
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="these alone, files of your own among them "
-                        "(default: the library)")  # fmt: skip
+    )
+    parser.add_argument(
+        "scenes", nargs="*", metavar="SCENE", help="these alone, files of your own among them (default: the library)"
+    )
     add_json(parser)
 
 
@@ -23,20 +27,22 @@ def run(options: argparse.Namespace) -> int:
 
     scenes = [load_scene(name) for name in options.scenes or SCENE_NAMES]
     if options.json:
-        print_json({
-            s.name: {
-                "sentence": s.sentence,
-                "keys": {k.name: {"unit": k.unit, "sentence": k.sentence, "default": k.default} for k in s.keys},
-                "parameters": {
-                    p.name: {"unit": p.unit, "sentence": p.sentence, "default": p.default} for p in s.parameters
-                },
-                "states": {
-                    n.name: {"sentence": n.sentence, "keys": dict(n.keys), "parameters": dict(n.parameters)}
-                    for n in s.states
-                },
+        print_json(
+            {
+                s.name: {
+                    "sentence": s.sentence,
+                    "keys": {k.name: {"unit": k.unit, "sentence": k.sentence, "default": k.default} for k in s.keys},
+                    "parameters": {
+                        p.name: {"unit": p.unit, "sentence": p.sentence, "default": p.default} for p in s.parameters
+                    },
+                    "states": {
+                        n.name: {"sentence": n.sentence, "keys": dict(n.keys), "parameters": dict(n.parameters)}
+                        for n in s.states
+                    },
+                }
+                for s in scenes
             }
-            for s in scenes
-        })  # fmt: skip
+        )
         return 0
     for scene in scenes:
         print(f"{scene.name}: {scene.sentence}")

@@ -18,9 +18,12 @@ BAR = "{percentage:3.0f}%|{bar}| t = {n:.3g} of {total:.3g} s [{elapsed}<{remain
 
 def register(commands: Any) -> None:
     parser = add_command(
-        commands, "simulate", run, sentence="follow one trajectory and report its jumps and Proposition 1's margins",
+        commands,
+        "simulate",
+        run,
+        sentence="follow one trajectory and report its jumps and Proposition 1's margins",
         example="painleve simulate slender_rod --state stoss --step 1e-3 --until 1",
-    )  # fmt: skip
+    )
     add_motion(parser)
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="keep the trajectory in this HDF5 file")
     add_json(parser)
@@ -36,10 +39,14 @@ def run(options: argparse.Namespace) -> int:
     target = options.output and check_writable(options.output)
     with tqdm(total=options.until, bar_format=BAR, leave=False, delay=1.0, disable=None) as bar:
         trajectory = simulate(
-            read_start(options), scheme=options.scheme, step=options.step, until=options.until,
-            contact_tolerance=options.contact_tolerance, options=read_options(options),
+            read_start(options),
+            scheme=options.scheme,
+            step=options.step,
+            until=options.until,
+            contact_tolerance=options.contact_tolerance,
+            options=read_options(options),
             progress=lambda covered: bar.update(min(covered, bar.total - bar.n)),
-        )  # fmt: skip
+        )
     if trajectory.ending is Ending.NOT_FINITE:
         raise InputError(f"{trajectory.sentence}; after {trajectory.steps} steps, at t = {trajectory.t[-1]:.6g}")
     if target is not None:

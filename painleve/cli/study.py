@@ -18,9 +18,12 @@ CHECKOUT = Path(__file__).parents[2]
 
 def register(commands: Any) -> None:
     parser = add_command(
-        commands, "study", run, sentence="run a study: one claim, its figures and its table",
+        commands,
+        "study",
+        run,
+        sentence="run a study: one claim, its figures and its table",
         example="painleve study theorem1 --quick",
-    )  # fmt: skip
+    )
     parser.add_argument("name", nargs="?", metavar="NAME", help="the study; without it the studies are listed")
     parser.add_argument("--quick", action="store_true", help="a reduced run, for a first look and for CI")
     parser.add_argument("--seed", type=count, default=0, metavar="S", help="seed of all sampling (default 0)")

@@ -20,16 +20,23 @@ if TYPE_CHECKING:
 
 def register(commands: Any) -> None:
     parser = add_command(
-        commands, "sweep", run, sentence="measure the distances over eps, states and parameters, and keep them as HDF5",
+        commands,
+        "sweep",
+        run,
+        sentence="measure the distances over eps, states and parameters, and keep them as HDF5",
         example="painleve sweep slender_rod --state 'theta=atan(2)' --over mu=1,4/3,2 --eps 1e-1 1e-2 1e-3 -o sweep.h5",
-    )  # fmt: skip
+    )
     add_scene(parser)
     add_state(parser)
     parser.add_argument("--eps", type=real, nargs="+", required=True, metavar="E", help="radii of the balls")
     parser.add_argument(
-        "--over", nargs="+", action="extend", default=[], metavar="NAME=EXPR,EXPR,...",
+        "--over",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="NAME=EXPR,EXPR,...",
         help="values of a parameter or a state key to sweep",
-    )  # fmt: skip
+    )
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE", help="the HDF5 file to write")
     add_method(parser)
     add_json(parser)
@@ -57,9 +64,16 @@ def run(options: argparse.Namespace) -> int:
             bar.update()
 
         dataset = sweep_distances(
-            scene, eps=options.eps, states=names, keys=keys, parameters=parameters, over=over, method=method,
-            options=settings, progress=progress,
-        )  # fmt: skip
+            scene,
+            eps=options.eps,
+            states=names,
+            keys=keys,
+            parameters=parameters,
+            over=over,
+            method=method,
+            options=settings,
+            progress=progress,
+        )
     save(dataset, target)
     verdicts = list(_verdicts(dataset))
     if options.json:
@@ -67,8 +81,11 @@ def run(options: argparse.Namespace) -> int:
         print_json({"file": str(target), "dimensions": sizes, "points": points, "verdicts": verdicts})
         return 0
     for verdict in verdicts:
-        print("{point}: {branch}; {status}: {reason}".format(**verdict) if verdict["branch"] != "not_run"
-              else "{point}: failed: {failure}".format(**verdict))  # fmt: skip
+        print(
+            "{point}: {branch}; {status}: {reason}".format(**verdict)
+            if verdict["branch"] != "not_run"
+            else "{point}: failed: {failure}".format(**verdict)
+        )
         if verdict["failure"] and verdict["branch"] != "not_run":
             print("  failed at an eps: {failure}".format(**verdict))
     print(f"{target}: {points} {'point' if points == 1 else 'points'}; `painleve plot {target}` draws them")
@@ -85,8 +102,13 @@ def _verdicts(dataset: xr.Dataset) -> Iterator[dict[str, str]]:
         places += [f"{name}={spot[f'{name}_exact'].item()}" for name in swept if name != "state"]
         branch, status = (names[name][int(spot[name])] for name in ("theorem_branch", "verdict"))
         reason = str(spot["verdict_reason"].item())
-        yield {"point": " ".join(places), "branch": branch, "status": status, "reason": reason,
-               "failure": _failure(spot)}  # fmt: skip
+        yield {
+            "point": " ".join(places),
+            "branch": branch,
+            "status": status,
+            "reason": reason,
+            "failure": _failure(spot),
+        }
 
 
 def _failure(spot: xr.Dataset) -> str:

@@ -23,8 +23,23 @@ PIECES = EDGES + 1
 
 
 @jit
-def branch_excesses(branch, kind, base, differences, share, eps, u, direction, length, impulse, multiplier,
-                    critical_edge, values, places, impulses):  # fmt: skip
+def branch_excesses(
+    branch,
+    kind,
+    base,
+    differences,
+    share,
+    eps,
+    u,
+    direction,
+    length,
+    impulse,
+    multiplier,
+    critical_edge,
+    values,
+    places,
+    impulses,
+):
     """For each column of `differences` (rows minus their base values) the largest distance/eps, -1 where the branch
     has no member; dv/eps into `places` (d, n) and the normal impulse of the slip into `impulses`.
 

@@ -14,9 +14,26 @@ from painleve.core.law import FREE, SLIP_MINUS, SLIP_PLUS, STICK
 
 @jit
 def planar_split(
-    hit, a, b, C, edge_plus, edge_minus, mu_plus, mu_minus, da, db, dC, dmu_plus, dmu_minus,
-    v_n, dv_t, base_n, base_t, multiplier, critical_edge,
-):  # fmt: skip
+    hit,
+    a,
+    b,
+    C,
+    edge_plus,
+    edge_minus,
+    mu_plus,
+    mu_minus,
+    da,
+    db,
+    dC,
+    dmu_plus,
+    dmu_minus,
+    v_n,
+    dv_t,
+    base_n,
+    base_t,
+    multiplier,
+    critical_edge,
+):
     """(branch, tau, e_n, e_t) at an offset state.
 
     `hit`: in contact with v_n < 0; da ... dmu_minus: differences from the base state; (base_n, base_t): its sticking

@@ -31,9 +31,7 @@ def distance_squared(kind, along, beyond, across2):
 
 
 @jit
-def reduce_block(
-    kind, length, start, size, branch, along, beyond, across2, counts, best, best_index, bins, bin_index
-):
+def reduce_block(kind, length, start, size, branch, along, beyond, across2, counts, best, best_index, bins, bin_index):
     """Fold the first `size` samples of a block into a lane's state.
 
     best: [farthest from the limit set, nearest to u-, nearest to u_tilde], squared; best_index: where.

@@ -51,9 +51,16 @@ def contact_problem(rows, dimension, planar, v_n, v_t, bias):
         return -(v_n + bias) / a, 0.0, FRICTIONLESS
     tail = 3 + 4 * dimension
     return planar_impulse(
-        a, rows[tail], rows[tail + 1], rows[2 + 2 * dimension], rows[tail + 2], rows[tail + 3], rows[tail + 4],
-        v_n + bias, v_t,
-    )  # fmt: skip
+        a,
+        rows[tail],
+        rows[tail + 1],
+        rows[2 + 2 * dimension],
+        rows[tail + 2],
+        rows[tail + 3],
+        rows[tail + 4],
+        v_n + bias,
+        v_t,
+    )
 
 
 @jit

@@ -144,9 +144,20 @@ class _Task:
         outcome, time, steps = np.empty(n, np.int8), np.empty(n), np.empty(n, np.int64)
         s = self.start
         s.motion.run_members(
-            int(self.method.code), self.theta, self.tolerance, s.rounding, s.t, h, self.until, q, u, s.p,
-            outcome, time, steps,
-        )  # fmt: skip
+            int(self.method.code),
+            self.theta,
+            self.tolerance,
+            s.rounding,
+            s.t,
+            h,
+            self.until,
+            q,
+            u,
+            s.p,
+            outcome,
+            time,
+            steps,
+        )
         return first, Members(step=h, outcome=outcome, time=time, steps=steps)
 
     def draw(self, first: int, n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -198,10 +209,18 @@ def run_ensemble(
         raise InputError(f"scheme: ensembles need a fixed-step scheme, and {scheme} is not one")
     settings = method.settings(contact_tolerance, options)
     task = _Task(
-        start=beginning, method=method, theta=method.theta(settings), tolerance=contact_tolerance,
-        step=check_step(step), until=check_until(until), count=_checked_count(count), seed=_checked_seed(seed),
-        spread=spread, window=window, ball=ball,
-    )  # fmt: skip
+        start=beginning,
+        method=method,
+        theta=method.theta(settings),
+        tolerance=contact_tolerance,
+        step=check_step(step),
+        until=check_until(until),
+        count=_checked_count(count),
+        seed=_checked_seed(seed),
+        spread=spread,
+        window=window,
+        ball=ball,
+    )
     _check_difference(task)
     return _collect(task, threads, keep, progress)
 
@@ -259,23 +278,34 @@ def _collect(task: _Task, threads: int | None, keep: bool, progress: Callable[[i
         lanes.close()
     varied = {"spread": task.spread, "window": task.window, "ball": task.ball}
     return Ensemble(
-        start=task.start, scheme=task.method.name, ending=ending, steps=tally.steps, resolution=width, members=kept,
+        start=task.start,
+        scheme=task.method.name,
+        ending=ending,
+        steps=tally.steps,
+        resolution=width,
+        members=kept,
         counts={o: int(tally.counts[o]) for o in Outcome if o is not Outcome.NOT_RUN},
         jump_time=_jump_time(tally, task.start.t, width),
         settings={
-            "step": task.step, "until": task.until, "count": task.count, "seed": task.seed,
-            "contact_tolerance": task.tolerance, "theta": task.theta,
+            "step": task.step,
+            "until": task.until,
+            "count": task.count,
+            "seed": task.seed,
+            "contact_tolerance": task.tolerance,
+            "theta": task.theta,
             **{name: value for name, value in varied.items() if value is not None},
         },
-    )  # fmt: skip
+    )
 
 
 def _empty_members(count: int) -> Members:
     """Room for all members, none of which has run."""
     return Members(
-        step=np.full(count, np.nan), outcome=np.full(count, int(Outcome.NOT_RUN), np.int8),
-        time=np.full(count, np.nan), steps=np.zeros(count, np.int64),
-    )  # fmt: skip
+        step=np.full(count, np.nan),
+        outcome=np.full(count, int(Outcome.NOT_RUN), np.int8),
+        time=np.full(count, np.nan),
+        steps=np.zeros(count, np.int64),
+    )
 
 
 def _jump_time(tally: _Tally, start: float, width: float) -> tuple[float, float, float] | None:

@@ -18,9 +18,15 @@ CHUNK = 100_000  # steps: some ten milliseconds
 
 
 def run_fixed_step(
-    name: str, code: int, theta: float, lag: float, start: Start, grid: Grid, tolerance: float,
+    name: str,
+    code: int,
+    theta: float,
+    lag: float,
+    start: Start,
+    grid: Grid,
+    tolerance: float,
     progress: Callable[[float], None],
-) -> Trajectory:  # fmt: skip
+) -> Trajectory:
     """Step through the grid with the compiled scheme of that code, to its end or to the first step that fails.
 
     `progress` hears of the time covered after each chunk; the steps do not depend on how they are cut into chunks.
@@ -35,9 +41,20 @@ def run_fixed_step(
             rest = slice(done, min(done + CHUNK, n) + 1)
             steps = grid.h[done : done + CHUNK]
             taken, status, since = start.motion.run(
-                code, theta, tolerance, since, grid.t[rest], steps, start.p, q[rest], u[rest], r[rest], branch[rest],
-                change[rest], several[rest],
-            )  # fmt: skip
+                code,
+                theta,
+                tolerance,
+                since,
+                grid.t[rest],
+                steps,
+                start.p,
+                q[rest],
+                u[rest],
+                r[rest],
+                branch[rest],
+                change[rest],
+                several[rest],
+            )
             done, ending = done + taken, Ending(status)
             progress(float(grid.t[done] - grid.t[done - taken]))
     except KeyboardInterrupt:
@@ -47,7 +64,16 @@ def run_fixed_step(
     if k < 2:  # in space other solutions of Coulomb's law are not counted
         statistics["steps_with_several_solutions"] = int((several[kept] > 1).sum())
     return Trajectory(
-        scheme=name, start=start, settings={"contact_tolerance": tolerance, "theta": theta}, t=grid.t[kept],
-        q=q[kept], u=u[kept], r=r[kept], branch=branch[kept], change=change[kept], lag=lag, ending=ending,
+        scheme=name,
+        start=start,
+        settings={"contact_tolerance": tolerance, "theta": theta},
+        t=grid.t[kept],
+        q=q[kept],
+        u=u[kept],
+        r=r[kept],
+        branch=branch[kept],
+        change=change[kept],
+        lag=lag,
+        ending=ending,
         statistics=statistics,
-    )  # fmt: skip
+    )

@@ -107,7 +107,10 @@ class SingularPoint:
             q={"x": 0, "y": length * math.sin(theta), "theta": theta},
             u={"x": slip - length * omega * math.sin(theta), "y": length * omega * math.cos(theta), "theta": omega},
             parameters={
-                "mu": self.mu, "gravity": self.gravity, "m": self.mass, "l": length,
+                "mu": self.mu,
+                "gravity": self.gravity,
+                "m": self.mass,
+                "l": length,
                 "I": self.mass * length**2 / self.alpha,
             },
         )
@@ -125,10 +128,17 @@ def singular_point(
     t = 2.0 * (1.0 + alpha) / (mu * alpha + math.sqrt(discriminant))
     theta = math.atan(t)
     return SingularPoint(
-        mu=mu, alpha=alpha, gravity=gravity, mass=mass, length=length, theta=theta,
-        omega=math.sqrt(gravity / (length * math.sin(theta))), ratio=2.0 * t**2 / (1.0 + alpha - t**2),
-        drift=gravity / t, curvature=gravity,
-    )  # fmt: skip
+        mu=mu,
+        alpha=alpha,
+        gravity=gravity,
+        mass=mass,
+        length=length,
+        theta=theta,
+        omega=math.sqrt(gravity / (length * math.sin(theta))),
+        ratio=2.0 * t**2 / (1.0 + alpha - t**2),
+        drift=gravity / t,
+        curvature=gravity,
+    )
 
 
 def find_friction(ratio: float, *, alpha: float = 3.0) -> float:

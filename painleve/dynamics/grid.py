@@ -49,8 +49,10 @@ def make_grid(start: float, step: float | Sequence[float] | np.ndarray, until: f
         h = check_step(float(step))  # type: ignore[arg-type]
         count = math.ceil(until / h * (1.0 - 1e-12)) if until / h < 2.0**62 else 2**62
         if count > MOST_STEPS:
-            raise InputError(f"step: {until:g}/{h:g} is more than {MOST_STEPS} steps, too many to keep; "
-                             "take larger steps or a shorter time")  # fmt: skip
+            raise InputError(
+                f"step: {until:g}/{h:g} is more than {MOST_STEPS} steps, too many to keep; "
+                "take larger steps or a shorter time"
+            )
         return Grid(t=start + h * np.arange(count + 1), h=np.full(count, h))
     steps = np.asarray(step, float)
     if steps.ndim != 1 or not (np.isfinite(steps).all() and (steps > 0.0).all()):

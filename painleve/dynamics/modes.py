@@ -42,10 +42,15 @@ class ContactPoint:
         normal = rows[1 : 1 + d]
         tangent = rows[3 + 2 * d : 3 + 3 * d] if motion.planar else (0.0,) * d
         return ContactPoint(
-            rows=rows, acceleration=acceleration, d=d, planar=motion.planar,
-            v_n=_dot(normal, state[1]), v_t=_dot(tangent, state[1]),
-            beta_n=_dot(normal, acceleration) + drift_n, beta_t=_dot(tangent, acceleration) + drift_t,
-        )  # fmt: skip
+            rows=rows,
+            acceleration=acceleration,
+            d=d,
+            planar=motion.planar,
+            v_n=_dot(normal, state[1]),
+            v_t=_dot(tangent, state[1]),
+            beta_n=_dot(normal, acceleration) + drift_n,
+            beta_t=_dot(tangent, acceleration) + drift_t,
+        )
 
     @property
     def a(self) -> float:

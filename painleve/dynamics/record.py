@@ -32,14 +32,18 @@ def record(trajectory: Trajectory) -> xr.Dataset:
         variables = {**_motion(trajectory), **_contact(trajectory), **_outline(trajectory)}
     time = ("time", trajectory.t, {"units": "s", "long_name": "time along the trajectory"})
     attributes = {
-        "title": f"Trajectory of {scene.name} by {trajectory.scheme}: {scene.sentence}", "kind": "trajectory",
-        "scene": scene.name, "start": trajectory.start.label, "scheme": trajectory.scheme,
-        "status": trajectory.ending.label, "ending": trajectory.sentence,
+        "title": f"Trajectory of {scene.name} by {trajectory.scheme}: {scene.sentence}",
+        "kind": "trajectory",
+        "scene": scene.name,
+        "start": trajectory.start.label,
+        "scheme": trajectory.scheme,
+        "status": trajectory.ending.label,
+        "ending": trajectory.sentence,
         "coordinates_of_scene": " ".join(c.name for c in scene.coordinates),
         "parameters": ", ".join(
             f"{s.name} = {x:.17g}" for s, x in zip(scene.parameters, trajectory.start.p, strict=True)
         ),
-    }  # fmt: skip
+    }
     return xr.Dataset(variables, {"time": time}, attributes)
 
 

@@ -45,8 +45,17 @@ class Recorder:
         t, y, branch, change = (np.concatenate(column) for column in zip(*self.parts, strict=True))
         counts = {b.label: int((branch[1:] == b).sum()) for b in Branch}
         return Trajectory(
-            scheme=scheme, start=self.start, settings=settings, t=t, q=y[:, :d],
-            u=y[:, d : 2 * d], r=np.diff(y[:, 2 * d :], axis=0, prepend=y[:1, 2 * d :]), branch=branch,
-            change=change, lag=0.0, ending=ending, detail=detail,
+            scheme=scheme,
+            start=self.start,
+            settings=settings,
+            t=t,
+            q=y[:, :d],
+            u=y[:, d : 2 * d],
+            r=np.diff(y[:, 2 * d :], axis=0, prepend=y[:1, 2 * d :]),
+            branch=branch,
+            change=change,
+            lag=0.0,
+            ending=ending,
+            detail=detail,
             statistics={**counts, **statistics},
-        )  # fmt: skip
+        )

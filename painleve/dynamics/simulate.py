@@ -43,9 +43,7 @@ def simulate(
     result = method.run(beginning, grid, contact_tolerance, settings, progress or _ignore)
     if not monitor or scheme != "contact_dynamics":
         return result
-    margins = check_proposition1(
-        beginning, result.t, grid.h[: result.steps], result.q, result.u, contact_tolerance
-    )  # fmt: skip
+    margins = check_proposition1(beginning, result.t, grid.h[: result.steps], result.q, result.u, contact_tolerance)
     if margins.count < result.steps:
         detail = f"Proposition 1 was checked for the first {margins.count} steps"
         result = replace(result, ending=Ending.INTERRUPTED, detail=detail)

@@ -19,6 +19,7 @@ from painleve.figures import figure_of
 
 __all__ = ["Jump", "Trajectory"]
 
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Jump:
     """A jump of the velocity at a contact: when, of which kind, u- and u+ (d,), and gamma there.
@@ -81,10 +82,16 @@ class Trajectory:
             at = self.q[i] - self.lag * (self.t[i] - self.t[i - 1]) * self.u[i]
             rows = np.array([motion.rows_at(tuple(at), p)])
             response = _combined(self.r[i : i + 1], responses(motion, rows))[0]
-            found.append(Jump(
-                index=int(i), time=float(self.t[i]), kind=Change(self.change[i]),
-                gamma=float(gamma_along(motion, rows)[0]), u_minus=self.u[i] - response, u_plus=self.u[i].copy(),
-            ))  # fmt: skip
+            found.append(
+                Jump(
+                    index=int(i),
+                    time=float(self.t[i]),
+                    kind=Change(self.change[i]),
+                    gamma=float(gamma_along(motion, rows)[0]),
+                    u_minus=self.u[i] - response,
+                    u_plus=self.u[i].copy(),
+                )
+            )
         return tuple(found)
 
     def contact_quantities(self) -> dict[str, np.ndarray]:

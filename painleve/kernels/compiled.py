@@ -44,7 +44,14 @@ def make_kernels(scene: Scene) -> Kernels:
     text = scene_source(scene, rows, derivation.shape)
     module, digest, path = load_generated(f"scene_{scene.name}", text)
     return Kernels(
-        derivation=derivation, rows=rows, digest=digest, path=path, rows_at=module.rows_at,
-        varying_block=module.varying_block, law_block=module.law_block, offset_block=module.offset_block,
-        sample_lane=module.sample_lane, law_at=module.law_at,
-    )  # fmt: skip
+        derivation=derivation,
+        rows=rows,
+        digest=digest,
+        path=path,
+        rows_at=module.rows_at,
+        varying_block=module.varying_block,
+        law_block=module.law_block,
+        offset_block=module.offset_block,
+        sample_lane=module.sample_lane,
+        law_at=module.law_at,
+    )

@@ -52,8 +52,17 @@ def make_motion(scene: Scene) -> Motion:
     rows = motion_rows(derivation)
     module, digest, path = load_generated(f"motion_{scene.name}", motion_source(scene, rows))
     return Motion(
-        derivation=derivation, rows=rows, digest=digest, path=path, motion_at=module.motion_at,
-        rows_at=module.rows_at, inertia_at=module.inertia_at, force_at=module.force_at, drift_at=module.drift_at,
-        step=module.step, run=module.run, run_members=module.run_members,
+        derivation=derivation,
+        rows=rows,
+        digest=digest,
+        path=path,
+        motion_at=module.motion_at,
+        rows_at=module.rows_at,
+        inertia_at=module.inertia_at,
+        force_at=module.force_at,
+        drift_at=module.drift_at,
+        step=module.step,
+        run=module.run,
+        run_members=module.run_members,
         tabulate=module.tabulate,
-    )  # fmt: skip
+    )

@@ -23,8 +23,14 @@ __all__ = ["motion_source"]
 def motion_source(scene: Scene, rows: Rows) -> str:
     """The source text of a scene's motion kernels; `rows` as painleve.kernels.motion_rows gives them."""
     imports, constants, schemes = _space_text(scene, rows) if scene.friction_dimension > 1 else _planar_text(scene)
-    header = HEADER.format(name=scene.name, rows=", ".join(rows.names), dimension=scene.dimension,
-                           row_count=len(rows.names), imports=imports, constants=constants)  # fmt: skip
+    header = HEADER.format(
+        name=scene.name,
+        rows=", ".join(rows.names),
+        dimension=scene.dimension,
+        row_count=len(rows.names),
+        imports=imports,
+        constants=constants,
+    )
     M, f = scene.inertia, scene.force
     acceleration = M.adjugate() * f / M.det(method="berkowitz")
     parts = [

@@ -94,8 +94,13 @@ def scene_source(scene: Scene, rows: Rows, shape: Sequence[int]) -> str:
     imports = space_imports(scene) or PLANAR_IMPORTS
     header = HEADER.format(name=scene.name, rows=", ".join(rows.names), varying=varying, law=imports)
     planar = f"law_from_rows(rows, {scene.dimension}, {scene.friction is not None}, v, result)"
-    lane = LANE.format(dimension=scene.dimension, shape=len(shape), varying_count=len(rows.varying),
-                       row_count=len(rows.names), law=law_call(scene) or planar)  # fmt: skip
+    lane = LANE.format(
+        dimension=scene.dimension,
+        shape=len(shape),
+        varying_count=len(rows.varying),
+        row_count=len(rows.names),
+        law=law_call(scene) or planar,
+    )
     parts = [_rows_at(scene, rows), _varying_block(scene, rows, shape), _law_block(scene, rows), lane]
     return header + "\n\n".join(parts)
 

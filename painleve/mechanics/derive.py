@@ -58,7 +58,6 @@ class Derivation:
         normal = sp.Matrix([[self.a]]).row_join(self.couplings.T)
         return sp.ImmutableMatrix(normal.col_join(self.couplings.row_join(self.compliance)))
 
-
     def edge_direction(self, edge: int) -> sp.ImmutableMatrix:
         """s (k x 1) on an edge of the cone: +mu_plus (1) or -mu_minus (-1) of a segment, vertex 1, 2, ... of a polygon,
         or the one that opposes b most on a disc or an ellipse (1; there b must not vanish)."""
@@ -90,11 +89,22 @@ def derive(scene: Scene) -> Derivation:
     plus, minus, least, critical = _edges(scene.friction, a, b)
     shape, carried, idle = _coordinate_roles(scene, w_n)
     return Derivation(
-        scene=scene, normal=w_n, normal_response=sp.ImmutableMatrix(Y_n), tangent_response=sp.ImmutableMatrix(Y_t),
-        a=a, couplings=sp.ImmutableMatrix(b), compliance=sp.ImmutableMatrix(C), edge_plus=plus, edge_minus=minus,
-        gradient_squared=squared, gamma=least / squared, critical_friction=critical,
-        shape=shape, carried=carried, idle=idle,
-    )  # fmt: skip
+        scene=scene,
+        normal=w_n,
+        normal_response=sp.ImmutableMatrix(Y_n),
+        tangent_response=sp.ImmutableMatrix(Y_t),
+        a=a,
+        couplings=sp.ImmutableMatrix(b),
+        compliance=sp.ImmutableMatrix(C),
+        edge_plus=plus,
+        edge_minus=minus,
+        gradient_squared=squared,
+        gamma=least / squared,
+        critical_friction=critical,
+        shape=shape,
+        carried=carried,
+        idle=idle,
+    )
 
 
 def _edges(

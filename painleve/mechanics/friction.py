@@ -141,10 +141,16 @@ class Polygon:
         v, n = self.vertices, len(self.vertices)
         points = [(sp.Integer(0), sp.Integer(0)), *v]
         return tuple(
-            Condition(expression=_cross(_minus(v[(i + 1) % n], v[i]), _minus(points[j], v[i])), sentence=(
-                f"the side of edge {i + 1} of the friction polygon on which {f'vertex {j}' if j else '0'} lies"))
-            for i in range(n) for j in range(n + 1) if j not in (i + 1, (i + 1) % n + 1)
-        )  # fmt: skip
+            Condition(
+                expression=_cross(_minus(v[(i + 1) % n], v[i]), _minus(points[j], v[i])),
+                sentence=(
+                    f"the side of edge {i + 1} of the friction polygon on which {f'vertex {j}' if j else '0'} lies"
+                ),
+            )
+            for i in range(n)
+            for j in range(n + 1)
+            if j not in (i + 1, (i + 1) % n + 1)
+        )
 
     def membership(self, s: sp.MatrixBase) -> tuple[sp.Expr, ...]:
         """Zero or positive, all of them, where s (k x 1) is in the section."""

@@ -22,10 +22,18 @@ __all__ = ["Jet", "jets", "monomials"]
 Powers = tuple[int, ...]
 
 _SERIES: dict[type, Callable[[flint.arb_series], flint.arb_series]] = {
-    sp.sin: lambda s: s.sin(), sp.cos: lambda s: s.cos(), sp.tan: lambda s: s.tan(), sp.exp: lambda s: s.exp(),
-    sp.log: lambda s: s.log(), sp.atan: lambda s: s.atan(), sp.asin: lambda s: s.asin(), sp.acos: lambda s: s.acos(),
-    sp.cot: lambda s: s.cos() / s.sin(), sp.sec: lambda s: 1 / s.cos(), sp.csc: lambda s: 1 / s.sin(),
-}  # fmt: skip
+    sp.sin: lambda s: s.sin(),
+    sp.cos: lambda s: s.cos(),
+    sp.tan: lambda s: s.tan(),
+    sp.exp: lambda s: s.exp(),
+    sp.log: lambda s: s.log(),
+    sp.atan: lambda s: s.atan(),
+    sp.asin: lambda s: s.asin(),
+    sp.acos: lambda s: s.acos(),
+    sp.cot: lambda s: s.cos() / s.sin(),
+    sp.sec: lambda s: 1 / s.cos(),
+    sp.csc: lambda s: 1 / s.sin(),
+}
 
 
 def monomials(variables: int, order: int) -> list[Powers]:

@@ -110,8 +110,10 @@ def _along_the_constraint(
     basis = sp.zeros(len(used), len(others))
     for column, i in enumerate(others):
         basis[i, column], basis[m, column] = 1, -grad_g[i] / grad_g[m]
-    return _judge(basis.T * form * basis, "grad gamma = -kappa grad g with kappa > 0, and the form of gamma + kappa g "
-                  "on the tangent directions")  # fmt: skip
+    return _judge(
+        basis.T * form * basis,
+        "grad gamma = -kappa grad g with kappa > 0, and the form of gamma + kappa g on the tangent directions",
+    )
 
 
 def _without_slope(state: State, p: sp.Expr) -> Neighbours:

@@ -233,11 +233,23 @@ def make_scene(
         _check_symbols(name, "a state key's rule", sp.Matrix(list(rule.values()) or [0]), given)
         _check_targets(name, rule, allowed)
     return Scene(
-        name=name, sentence=sentence, source=source, coordinates=coordinates, parameters=parameters, inertia=M,
-        force=f, constraint=constraint, tangents=H, friction=friction, keys=keys,
-        placement=MappingProxyType(dict(rules[0])), velocity=MappingProxyType(dict(rules[1])),
-        contact_parameters=MappingProxyType(dict(rules[2])), states=states, outline=outline,
-    )  # fmt: skip
+        name=name,
+        sentence=sentence,
+        source=source,
+        coordinates=coordinates,
+        parameters=parameters,
+        inertia=M,
+        force=f,
+        constraint=constraint,
+        tangents=H,
+        friction=friction,
+        keys=keys,
+        placement=MappingProxyType(dict(rules[0])),
+        velocity=MappingProxyType(dict(rules[1])),
+        contact_parameters=MappingProxyType(dict(rules[2])),
+        states=states,
+        outline=outline,
+    )
 
 
 def gyroscopic_force(M: sp.MatrixBase, q: list[sp.Symbol], u: list[sp.Symbol]) -> sp.Matrix:
@@ -258,22 +270,23 @@ def _inertia(
         M = M.applyfunc(sp.expand)
         remainder = sp.expand(energy - (sp.Matrix(u).T * M * sp.Matrix(u))[0, 0] / 2)
         if sp.simplify(remainder) != 0:
-            raise InputError(f"scene {name}: the kinetic energy is not a quadratic form in the velocities "
-                             f"{', '.join(map(str, u))}; left over: {remainder}")  # fmt: skip
+            raise InputError(
+                f"scene {name}: the kinetic energy is not a quadratic form in the velocities "
+                f"{', '.join(map(str, u))}; left over: {remainder}"
+            )
     assert M is not None
     if M.shape != (len(q), len(q)):
         raise InputError(f"scene {name}: M has shape {M.shape}; {len(q)} coordinates need {(len(q), len(q))}")
     skew = (M - M.T).applyfunc(sp.simplify)
     if not skew.is_zero_matrix:
         i, j = next((i, j) for i in range(len(q)) for j in range(len(q)) if skew[i, j] != 0)
-        raise InputError(f"scene {name}: M is not symmetric: M[{q[i]}, {q[j]}] = {M[i, j]} "
-                         f"but M[{q[j]}, {q[i]}] = {M[j, i]}")  # fmt: skip
+        raise InputError(
+            f"scene {name}: M is not symmetric: M[{q[i]}, {q[j]}] = {M[i, j]} but M[{q[j]}, {q[i]}] = {M[j, i]}"
+        )
     return sp.ImmutableMatrix(M)
 
 
-def _applied_force(
-    name: str, potential: sp.Expr | None, force: sp.MatrixBase | None, q: list[sp.Symbol]
-) -> sp.Matrix:
+def _applied_force(name: str, potential: sp.Expr | None, force: sp.MatrixBase | None, q: list[sp.Symbol]) -> sp.Matrix:
     if potential is not None and force is not None:
         raise InputError(f"scene {name}: give a potential or a force, not both")
     if force is not None and tuple(force.shape) != (len(q), 1):
@@ -299,8 +312,10 @@ def _tangents(
 def _check_names(scene: str, names: list[str]) -> None:
     twice = sorted({n for n in names if names.count(n) > 1})
     if twice:
-        raise InputError(f"scene {scene}: {', '.join(twice)} is declared twice; everything needs a name of its own, "
-                         "and t and u_<coordinate> are taken")  # fmt: skip
+        raise InputError(
+            f"scene {scene}: {', '.join(twice)} is declared twice; everything needs a name of its own, "
+            "and t and u_<coordinate> are taken"
+        )
 
 
 def _check_targets(scene: str, rule: Mapping[str, sp.Expr], allowed: list[str]) -> None:
@@ -313,8 +328,10 @@ def _check_friction(scene: str, H: sp.MatrixBase, friction: Section | None) -> N
     k, wanted = H.shape[1], 0 if friction is None else friction.dimension
     if k != wanted:
         have = "no friction section" if friction is None else f"a {type(friction).__name__.lower()} as friction section"
-        raise InputError(f"scene {scene}: {k} tangential displacements with {have}; no friction needs none, "
-                         "a segment one, a disc, an ellipse or a polygon two")  # fmt: skip
+        raise InputError(
+            f"scene {scene}: {k} tangential displacements with {have}; no friction needs none, "
+            "a segment one, a disc, an ellipse or a polygon two"
+        )
     if isinstance(friction, Polygon) and len(friction.vertices) < 3:
         raise InputError(f"scene {scene}: a friction polygon needs three vertices at least")
 

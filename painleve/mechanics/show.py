@@ -45,37 +45,73 @@ def derivation_lines(scene: Scene) -> list[Line]:
         with limited_calls(MOST_CALLS):
             return [*_mechanics(scene), *_contact(scene)]
     except TooMuchWork:
-        raise InputError(f"{scene.file}: the formulas of this scene take too much work to simplify for printing; "
-                         "shorten them (no other command needs this)") from None  # fmt: skip
+        raise InputError(
+            f"{scene.file}: the formulas of this scene take too much work to simplify for printing; "
+            "shorten them (no other command needs this)"
+        ) from None
 
 
 def _mechanics(scene: Scene) -> Iterator[Line]:
     d = derive(scene)
     size = sp.sqrt(_short(d.gradient_squared))
     yield Line(name="M", plain="M(q)", latex="M(q)", sentence="inertia", expression=scene.inertia.applyfunc(_short))
-    yield Line(name="f", plain="f(t, q, u)", latex="f(t, q, u)", expression=scene.force.applyfunc(_short),
-               sentence="force, gyroscopic terms included")  # fmt: skip
-    yield Line(name="g", plain="g(q)", latex="g(q)", expression=_short(scene.constraint),
-               sentence="constraint: admissible where g <= 0, so the gap is -g")  # fmt: skip
-    yield Line(name="grad_g", plain="∇g(q)", latex=r"\nabla g(q)", sentence="gradient of the constraint",
-               expression=(-d.normal).applyfunc(_short))  # fmt: skip
-    yield Line(name="n", plain="n(q)", latex="n(q)", sentence="inward unit normal, -∇g/|∇g|",
-               expression=d.normal.applyfunc(_short) / size)  # fmt: skip
+    yield Line(
+        name="f",
+        plain="f(t, q, u)",
+        latex="f(t, q, u)",
+        expression=scene.force.applyfunc(_short),
+        sentence="force, gyroscopic terms included",
+    )
+    yield Line(
+        name="g",
+        plain="g(q)",
+        latex="g(q)",
+        expression=_short(scene.constraint),
+        sentence="constraint: admissible where g <= 0, so the gap is -g",
+    )
+    yield Line(
+        name="grad_g",
+        plain="∇g(q)",
+        latex=r"\nabla g(q)",
+        sentence="gradient of the constraint",
+        expression=(-d.normal).applyfunc(_short),
+    )
+    yield Line(
+        name="n",
+        plain="n(q)",
+        latex="n(q)",
+        sentence="inward unit normal, -∇g/|∇g|",
+        expression=d.normal.applyfunc(_short) / size,
+    )
 
 
 def _contact(scene: Scene) -> Iterator[Line]:
     d = derive(scene)
     if scene.friction is not None:
-        yield Line(name="H", plain="H(q)", latex="H(q)", expression=scene.tangents.applyfunc(_short),
-                   sentence="gradients of the contact point's tangential displacements, column by column")  # fmt: skip
+        yield Line(
+            name="H",
+            plain="H(q)",
+            latex="H(q)",
+            expression=scene.tangents.applyfunc(_short),
+            sentence="gradients of the contact point's tangential displacements, column by column",
+        )
         yield from _section(d)
-    yield Line(name="a", plain="a(q)", latex="a(q)", expression=_short(d.a),
-               sentence="normal compliance, ∇g·M⁻¹∇g")  # fmt: skip
+    yield Line(name="a", plain="a(q)", latex="a(q)", expression=_short(d.a), sentence="normal compliance, ∇g·M⁻¹∇g")
     if scene.friction is not None:
-        yield Line(name="b", plain="b(q)", latex="b(q)", expression=_scalar(d.couplings.applyfunc(_short)),
-                   sentence="coupling of normal and tangent, -∇g·M⁻¹H")  # fmt: skip
-        yield Line(name="C", plain="C(q)", latex="C(q)", expression=_scalar(d.compliance.applyfunc(_short)),
-                   sentence="tangential compliance, H·M⁻¹H")  # fmt: skip
+        yield Line(
+            name="b",
+            plain="b(q)",
+            latex="b(q)",
+            expression=_scalar(d.couplings.applyfunc(_short)),
+            sentence="coupling of normal and tangent, -∇g·M⁻¹H",
+        )
+        yield Line(
+            name="C",
+            plain="C(q)",
+            latex="C(q)",
+            expression=_scalar(d.compliance.applyfunc(_short)),
+            sentence="tangential compliance, H·M⁻¹H",
+        )
     yield from _indicator(d)
 
 
@@ -86,20 +122,33 @@ def _section(d: Derivation) -> Iterator[Line]:
         return
     size = sp.sqrt(_short(d.gradient_squared))
     ends = [d.scene.tangents.applyfunc(_short) * s / size for s in (-friction.minus, friction.plus)]
-    yield Line(name="D_1_minus", plain="D₁(q) from", latex=r"D_1^-(q)", expression=ends[0],
-               sentence="the friction section is the segment H s/|∇g|, from its end s = -μ")  # fmt: skip
-    yield Line(name="D_1_plus", plain="D₁(q) to", latex=r"D_1^+(q)", expression=ends[1],
-               sentence="to its end s = +μ")  # fmt: skip
+    yield Line(
+        name="D_1_minus",
+        plain="D₁(q) from",
+        latex=r"D_1^-(q)",
+        expression=ends[0],
+        sentence="the friction section is the segment H s/|∇g|, from its end s = -μ",
+    )
+    yield Line(name="D_1_plus", plain="D₁(q) to", latex=r"D_1^+(q)", expression=ends[1], sentence="to its end s = +μ")
 
 
 def _section_in_space(friction: Disc | Ellipse | Polygon | None) -> Iterator[Line]:
     if isinstance(friction, Disc | Ellipse):
-        yield Line(name="E", plain="E(q)", latex="E(q)", expression=friction.map,
-                   sentence="the friction section is {H E σ/|∇g| : |σ| ≤ 1}")  # fmt: skip
+        yield Line(
+            name="E",
+            plain="E(q)",
+            latex="E(q)",
+            expression=friction.map,
+            sentence="the friction section is {H E σ/|∇g| : |σ| ≤ 1}",
+        )
     elif friction is not None:
-        yield Line(name="vertices", plain="vertices", latex=r"\mathrm{vertices}",
-                   expression=sp.Matrix(friction.vertices),
-                   sentence="the friction section is {H s/|∇g|}, s in the polygon of these vertices")  # fmt: skip
+        yield Line(
+            name="vertices",
+            plain="vertices",
+            latex=r"\mathrm{vertices}",
+            expression=sp.Matrix(friction.vertices),
+            sentence="the friction section is {H s/|∇g|}, s in the polygon of these vertices",
+        )
 
 
 def _scalar(matrix: sp.MatrixBase) -> sp.Expr | sp.MatrixBase:
@@ -108,19 +157,39 @@ def _scalar(matrix: sp.MatrixBase) -> sp.Expr | sp.MatrixBase:
 
 
 def _indicator(d: Derivation) -> Iterator[Line]:
-    yield Line(name="gamma", plain="γ(q)", latex=r"\gamma(q)", expression=_gamma(d, {}),
-               sentence="least of <n, M⁻¹(n + w)> over D₁: negative in the paradox")  # fmt: skip
+    yield Line(
+        name="gamma",
+        plain="γ(q)",
+        latex=r"\gamma(q)",
+        expression=_gamma(d, {}),
+        sentence="least of <n, M⁻¹(n + w)> over D₁: negative in the paradox",
+    )
     if d.critical_friction is not None:
-        yield Line(name="critical_friction", plain="μ_c(q)", latex=r"\mu_c(q)", expression=_critical(d, {}),
-                   sentence="critical friction: γ < 0 where μ > μ_c")  # fmt: skip
+        yield Line(
+            name="critical_friction",
+            plain="μ_c(q)",
+            latex=r"\mu_c(q)",
+            expression=_critical(d, {}),
+            sentence="critical friction: γ < 0 where μ > μ_c",
+        )
     defaults = dependent_defaults(d.scene)
     if defaults:
         given = ", ".join(f"{name} = {value}" for name, value in defaults.items())
-        yield Line(name="gamma_default", plain="γ(q)", latex=r"\gamma(q)", sentence=f"γ with {given}",
-                   expression=_gamma(d, defaults))  # fmt: skip
+        yield Line(
+            name="gamma_default",
+            plain="γ(q)",
+            latex=r"\gamma(q)",
+            sentence=f"γ with {given}",
+            expression=_gamma(d, defaults),
+        )
         if d.critical_friction is not None:
-            yield Line(name="critical_friction_default", plain="μ_c(q)", latex=r"\mu_c(q)",
-                       sentence=f"critical friction with {given}", expression=_critical(d, defaults))  # fmt: skip
+            yield Line(
+                name="critical_friction_default",
+                plain="μ_c(q)",
+                latex=r"\mu_c(q)",
+                sentence=f"critical friction with {given}",
+                expression=_critical(d, defaults),
+            )
 
 
 def dependent_defaults(scene: Scene) -> dict[sp.Symbol, sp.Expr]:
@@ -209,9 +278,13 @@ def as_dict(scene: Scene) -> dict[str, object]:
     symbols = [{"name": s.name, "unit": s.unit, "sentence": s.sentence} for s in declared]
     roles = derive(scene)
     return {
-        "scene": scene.name, "sentence": scene.sentence, "source": scene.source, "symbols": symbols, "formulas": lines,
+        "scene": scene.name,
+        "sentence": scene.sentence,
+        "source": scene.source,
+        "symbols": symbols,
+        "formulas": lines,
         "coordinates_of_the_law": [scene.coordinates[i].name for i in roles.shape],
-    }  # fmt: skip
+    }
 
 
 def _plain(expression: sp.Expr | sp.MatrixBase) -> object:

@@ -115,8 +115,9 @@ def make_curve(
     The rest is as for make_state, and so are the errors; states of the curve are checked when they are made.
     """
     if along not in {key.name for key in scene.keys}:
-        raise InputError(f"scene {scene.name}: no state key {along!r} to go along; keys: "
-                         f"{', '.join(key.name for key in scene.keys)}")  # fmt: skip
+        raise InputError(
+            f"scene {scene.name}: no state key {along!r} to go along; keys: {', '.join(key.name for key in scene.keys)}"
+        )
     if along in (keys or {}):
         raise InputError(f"scene {scene.name}: {along} is given, and so cannot vary; leave it out")
     named = scene.state(name) if name is not None else None
@@ -166,8 +167,10 @@ def _sort_keys(
     natural = {k.name: k for k in scene.keys}
     for name in given:
         if name not in natural and name not in raw:
-            raise InputError(f"scene {scene.name}: no state key {name!r}; keys: {', '.join(natural)}; "
-                             f"single components: {', '.join(sorted(raw - set(natural)))}")  # fmt: skip
+            raise InputError(
+                f"scene {scene.name}: no state key {name!r}; keys: {', '.join(natural)}; "
+                f"single components: {', '.join(sorted(raw - set(natural)))}"
+            )
     exact = {name: exact_number(value, where=f"state key {name}") for name, value in given.items()}
     known = {k.name: k.symbol for k in scene.keys} | {p.name: p.symbol for p in scene.parameters}
     values: dict[sp.Symbol, sp.Expr] = {}
@@ -181,16 +184,21 @@ def _sort_keys(
             default = parse_expression(key.default, known, where=f"default of {name}")
             (formulas if default.free_symbols else values)[key.symbol] = default
         else:
-            raise InputError(f"scene {scene.name}: the state needs {name} ({key.sentence}, {key.unit}); "
-                             f"give {name}=EXPRESSION or a named state: "
-                             f"{', '.join(s.name for s in scene.states) or 'none'}")  # fmt: skip
+            raise InputError(
+                f"scene {scene.name}: the state needs {name} ({key.sentence}, {key.unit}); "
+                f"give {name}=EXPRESSION or a named state: "
+                f"{', '.join(s.name for s in scene.states) or 'none'}"
+            )
     return values, formulas, {name: value for name, value in exact.items() if name in raw and name not in natural}
 
 
 def _components(
-    scene: Scene, keys: Mapping[str, str], rules: Mapping[str, sp.Expr], point: Mapping[sp.Symbol, sp.Expr],
+    scene: Scene,
+    keys: Mapping[str, str],
+    rules: Mapping[str, sp.Expr],
+    point: Mapping[sp.Symbol, sp.Expr],
     given: Mapping[str, sp.Expr],
-) -> tuple[sp.Expr, ...]:  # fmt: skip
+) -> tuple[sp.Expr, ...]:
     values = []
     for coordinate, key in keys.items():
         value = given[key] if key in given else rules.get(coordinate, sp.Integer(0)).xreplace(dict(point))
@@ -227,12 +235,16 @@ def _check(state: State) -> None:
         raise InputError(f"{where}: grad g vanishes there; choose another configuration")
     if scene.friction is not None:
         if exact_sign(state.exact(d.delassus).det(method="berkowitz")).sign is not Sign.POSITIVE:
-            raise InputError(f"{where}: the tangential displacements do not vary independently of g there (H3); "
-                             "choose another configuration")  # fmt: skip
+            raise InputError(
+                f"{where}: the tangential displacements do not vary independently of g there (H3); "
+                "choose another configuration"
+            )
         for condition in scene.friction.conditions:
             if exact_sign(state.exact(condition.expression)).sign not in (Sign.POSITIVE, Sign.ZERO):
-                raise InputError(f"{where}: {condition.sentence} is {state.number(condition.expression):.6g} there; "
-                                 "it must be zero or positive")  # fmt: skip
+                raise InputError(
+                    f"{where}: {condition.sentence} is {state.number(condition.expression):.6g} there; "
+                    "it must be zero or positive"
+                )
     _check_zero(where, "g(q)", state.exact(scene.constraint), "the state is off the constraint")
     v_n = (d.normal.T * sp.Matrix(scene.u))[0, 0]
     _check_zero(where, "<u-, -grad g(q)>", state.exact(v_n), "the velocity is not tangential")
@@ -243,6 +255,7 @@ def _check_zero(where: str, what: str, value: sp.Expr, meaning: str) -> None:
     if signed.sign is Sign.ZERO:
         return
     if signed.sign is Sign.UNDECIDED:
-        raise InputError(f"{where}: whether {what} is exactly zero is undecided ({signed.reason}); "
-                         "give simpler numbers")  # fmt: skip
+        raise InputError(
+            f"{where}: whether {what} is exactly zero is undecided ({signed.reason}); give simpler numbers"
+        )
     raise InputError(f"{where}: {meaning}: {what} = {signed.value:.6g} and must be exactly 0")

@@ -170,16 +170,28 @@ class _Search:
         rise = 1 if slope > 0 else -1
         for sign, end in zip(signs, self.ends, strict=True):
             if sign is Sign.ZERO:
-                return Zero(status=Found.EXACT, place=end, enclosure=ball(end, bits=BITS), multiplicity=1, rise=rise,
-                            reason="at the end of the interval")  # fmt: skip
+                return Zero(
+                    status=Found.EXACT,
+                    place=end,
+                    enclosure=ball(end, bits=BITS),
+                    multiplicity=1,
+                    rise=rise,
+                    reason="at the end of the interval",
+                )
         if set(signs) != {Sign.POSITIVE, Sign.NEGATIVE}:
             return None
         enclosure = self._sharpened(s)
         place = self._exact_in(enclosure, 1)
         status = Found.ENCLOSED if place is None else Found.EXACT
         enclosure = enclosure if place is None else ball(place, bits=BITS)
-        return Zero(status=status, place=place, enclosure=enclosure, multiplicity=1, rise=rise,
-                    reason="the derivative has one sign, and the function another sign at each end")  # fmt: skip
+        return Zero(
+            status=status,
+            place=place,
+            enclosure=enclosure,
+            multiplicity=1,
+            rise=rise,
+            reason="the derivative has one sign, and the function another sign at each end",
+        )
 
     def _sharpened(self, s: arb) -> arb:
         """Newton's method on intervals."""
@@ -212,11 +224,22 @@ class _Search:
             derivative = self._compiled([self._derivative(multiplicity)])([s])[0]
             place = self._exact_in(s, multiplicity) if _nonzero(derivative) else None
             if place is not None:
-                return Zero(status=Found.EXACT, place=place, enclosure=ball(place, bits=BITS),
-                            multiplicity=multiplicity, rise=1 if derivative > 0 else -1,
-                            reason=f"a zero of multiplicity {multiplicity}, and the only one near")  # fmt: skip
-        return Zero(status=Found.UNDECIDED, place=None, enclosure=s, multiplicity=0, rise=0,
-                    reason="it comes too near to zero there for balls to tell none, one or several zeros")  # fmt: skip
+                return Zero(
+                    status=Found.EXACT,
+                    place=place,
+                    enclosure=ball(place, bits=BITS),
+                    multiplicity=multiplicity,
+                    rise=1 if derivative > 0 else -1,
+                    reason=f"a zero of multiplicity {multiplicity}, and the only one near",
+                )
+        return Zero(
+            status=Found.UNDECIDED,
+            place=None,
+            enclosure=s,
+            multiplicity=0,
+            rise=0,
+            reason="it comes too near to zero there for balls to tell none, one or several zeros",
+        )
 
 
 def _nonzero(x: arb) -> bool:

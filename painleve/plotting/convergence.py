@@ -14,15 +14,17 @@ from painleve.plotting.style import GREY, PALETTE, Mark, labels_of, legend_below
 
 __all__ = ["draw_convergence"]
 
-SCHEMES: Mapping[str, Mark] = MappingProxyType({
-    "contact_dynamics": Mark(colour=PALETTE["vermilion"], marker="o", label="Contact Dynamics"),
-    "moreau_jean": Mark(colour=PALETTE["blue"], marker="s", label="Moreau-Jean"),
-    "stewart_trinkle": Mark(colour=PALETTE["green"], marker="^", label="Stewart-Trinkle"),
-    "anitescu_potra": Mark(colour=PALETTE["orange"], marker="v", label="Anitescu-Potra"),
-    "schatzman_paoli": Mark(colour=PALETTE["purple"], marker="D", label="Schatzman-Paoli"),
-    "event_driven": Mark(colour=PALETTE["black"], marker="*", label="event-driven"),
-    "compliant": Mark(colour=PALETTE["sky"], marker="P", label="compliant"),
-})  # fmt: skip
+SCHEMES: Mapping[str, Mark] = MappingProxyType(
+    {
+        "contact_dynamics": Mark(colour=PALETTE["vermilion"], marker="o", label="Contact Dynamics"),
+        "moreau_jean": Mark(colour=PALETTE["blue"], marker="s", label="Moreau-Jean"),
+        "stewart_trinkle": Mark(colour=PALETTE["green"], marker="^", label="Stewart-Trinkle"),
+        "anitescu_potra": Mark(colour=PALETTE["orange"], marker="v", label="Anitescu-Potra"),
+        "schatzman_paoli": Mark(colour=PALETTE["purple"], marker="D", label="Schatzman-Paoli"),
+        "event_driven": Mark(colour=PALETTE["black"], marker="*", label="event-driven"),
+        "compliant": Mark(colour=PALETTE["sky"], marker="P", label="compliant"),
+    }
+)
 COLUMNS = 4
 STRIP = 0.04  # of an axis: where failed runs stand
 FLOOR = 1e-12
@@ -71,8 +73,15 @@ def _draw_panel(axis: Axes, one: xr.Dataset, work: str) -> None:
             _draw_scheme(axis, one, work, name, mark, resolution, hollow=verdicts[name] == "does_not_converge")
     if work == "value":
         _draw_slope(axis, one)
-    axis.plot([], [], linestyle="none", marker="o", color=PALETTE["black"], markerfacecolor="white",
-              label="hollow: does not converge")  # fmt: skip
+    axis.plot(
+        [],
+        [],
+        linestyle="none",
+        marker="o",
+        color=PALETTE["black"],
+        markerfacecolor="white",
+        label="hollow: does not converge",
+    )
     axis.grid(True, which="major", linewidth=0.3, alpha=0.5)
 
 
@@ -87,11 +96,27 @@ def _draw_scheme(
     worst = [
         k[np.argmax(error[k])] for k in (np.flatnonzero(done & (level == at)) for at in np.unique(level)) if len(k)
     ]
-    axis.plot(x[worst], error[worst], linewidth=0.7, color=mark.colour, marker=mark.marker, markersize=size,
-              markerfacecolor="white" if hollow else mark.colour, markeredgewidth=0.6, label=mark.label)  # fmt: skip
+    axis.plot(
+        x[worst],
+        error[worst],
+        linewidth=0.7,
+        color=mark.colour,
+        marker=mark.marker,
+        markersize=size,
+        markerfacecolor="white" if hollow else mark.colour,
+        markeredgewidth=0.6,
+        label=mark.label,
+    )
     if not done.all():
-        axis.plot(x[~done], np.full((~done).sum(), STRIP), linestyle="none", marker="x", color=mark.colour,
-                  transform=axis.get_xaxis_transform(), label=f"failed: {mark.label}")  # fmt: skip
+        axis.plot(
+            x[~done],
+            np.full((~done).sum(), STRIP),
+            linestyle="none",
+            marker="x",
+            color=mark.colour,
+            transform=axis.get_xaxis_transform(),
+            label=f"failed: {mark.label}",
+        )
 
 
 def _draw_slope(axis: Axes, one: xr.Dataset) -> None:

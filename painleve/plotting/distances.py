@@ -37,20 +37,56 @@ class _Series:
 
 
 METHOD = "METHOD"  # in a label: the place of the method's name
-TO_LIMIT = _Series(variable="excess_Aeps_A_lower", marker="^", colour=PALETTE["blue"], filled=True,
-                   label="$e(A_\\varepsilon, A)$, lower bound (METHOD)")  # fmt: skip
-TO_ENDS = _Series(variable="ends_excess_Aeps_A_lower", marker="^", colour=PALETTE["sky"], filled=False, size=7.0,
-                  label="$e(A_\\varepsilon, \\{u^-, \\tilde u\\})$, lower bound (METHOD)")  # fmt: skip
-FROM_LIMIT = _Series(variable="excess_A_Aeps_upper", marker="v", colour=PALETTE["vermilion"], filled=True,
-                     label="$e(A, A_\\varepsilon)$, upper bound (METHOD)")  # fmt: skip
-WITNESSED = _Series(variable="witnessed_upper", marker="v", colour=PALETTE["green"], filled=False,
-                    label="$e(A, A_\\varepsilon)$, upper bound (witnesses)")  # fmt: skip
-FROM_ENDS = _Series(variable="ends_excess_A_Aeps_upper", marker="v", colour=PALETTE["purple"], filled=False,
-                    label="$e(\\{u^-, \\tilde u\\}, A_\\varepsilon)$, upper bound (METHOD)")  # fmt: skip
-UPPER = _Series(variable="excess_Aeps_A_upper", marker="v", colour=PALETTE["blue"], filled=False,
-                label="$e(A_\\varepsilon, A)$, upper bound (METHOD)")  # fmt: skip
-LOWER = _Series(variable="excess_A_Aeps_lower", marker="^", colour=PALETTE["vermilion"], filled=False,
-                label="$e(A, A_\\varepsilon)$, lower bound (METHOD)")  # fmt: skip
+TO_LIMIT = _Series(
+    variable="excess_Aeps_A_lower",
+    marker="^",
+    colour=PALETTE["blue"],
+    filled=True,
+    label="$e(A_\\varepsilon, A)$, lower bound (METHOD)",
+)
+TO_ENDS = _Series(
+    variable="ends_excess_Aeps_A_lower",
+    marker="^",
+    colour=PALETTE["sky"],
+    filled=False,
+    size=7.0,
+    label="$e(A_\\varepsilon, \\{u^-, \\tilde u\\})$, lower bound (METHOD)",
+)
+FROM_LIMIT = _Series(
+    variable="excess_A_Aeps_upper",
+    marker="v",
+    colour=PALETTE["vermilion"],
+    filled=True,
+    label="$e(A, A_\\varepsilon)$, upper bound (METHOD)",
+)
+WITNESSED = _Series(
+    variable="witnessed_upper",
+    marker="v",
+    colour=PALETTE["green"],
+    filled=False,
+    label="$e(A, A_\\varepsilon)$, upper bound (witnesses)",
+)
+FROM_ENDS = _Series(
+    variable="ends_excess_A_Aeps_upper",
+    marker="v",
+    colour=PALETTE["purple"],
+    filled=False,
+    label="$e(\\{u^-, \\tilde u\\}, A_\\varepsilon)$, upper bound (METHOD)",
+)
+UPPER = _Series(
+    variable="excess_Aeps_A_upper",
+    marker="v",
+    colour=PALETTE["blue"],
+    filled=False,
+    label="$e(A_\\varepsilon, A)$, upper bound (METHOD)",
+)
+LOWER = _Series(
+    variable="excess_A_Aeps_lower",
+    marker="^",
+    colour=PALETTE["vermilion"],
+    filled=False,
+    label="$e(A, A_\\varepsilon)$, lower bound (METHOD)",
+)
 # Ball arithmetic gives bounds such as 1e-93 where the truth is 0; drawn to scale, one of them would flatten the rest.
 FOOT = 1e-20
 FIXED = {"state", "eps", "law_branch", "coordinate"}
@@ -109,8 +145,14 @@ def _draw_panel(axis: Axes, case: xr.Dataset, x: str) -> None:
     for series in (TO_LIMIT, UPPER, LOWER, FROM_LIMIT, WITNESSED, *((TO_ENDS, FROM_ENDS) if isolated.any() else ())):
         label = series.label.replace(METHOD, str(case.attrs["method"]))
         _draw_series(axis, values, case[series.variable].values, series, label)
-    _draw_below(axis, values, case["witnessed_upper"].values < FOOT, "$0$", WITNESSED.colour,
-                "$e(A, A_\\varepsilon) < 10^{-20}$ (witnesses)")  # fmt: skip
+    _draw_below(
+        axis,
+        values,
+        case["witnessed_upper"].values < FOOT,
+        "$0$",
+        WITNESSED.colour,
+        "$e(A, A_\\varepsilon) < 10^{-20}$ (witnesses)",
+    )
     failed = np.broadcast_to(labels_of(case["outcome"]) == "failed", values.shape)
     _draw_below(axis, values, failed, "x", PALETTE["black"], "failed")
 
@@ -118,14 +160,29 @@ def _draw_panel(axis: Axes, case: xr.Dataset, x: str) -> None:
 def _draw_below(axis: Axes, x: np.ndarray, shown: np.ndarray, marker: str, colour: str, label: str) -> None:
     """What has no place on the axis, at the foot of the panel."""
     if shown.any():
-        axis.plot(x[shown], np.full(shown.sum(), 0.04), linestyle="none", marker=marker, color=colour, label=label,
-                  transform=axis.get_xaxis_transform())  # fmt: skip
+        axis.plot(
+            x[shown],
+            np.full(shown.sum(), 0.04),
+            linestyle="none",
+            marker=marker,
+            color=colour,
+            label=label,
+            transform=axis.get_xaxis_transform(),
+        )
 
 
 def _draw_series(axis: Axes, x: np.ndarray, y: np.ndarray, series: _Series, label: str) -> None:
     """Only what the axis can show; a series without any such value stays out of the legend."""
     shown = y >= FOOT
     if shown.any():
-        axis.plot(x[shown], y[shown], linestyle="none", marker=series.marker, color=series.colour, label=label,
-                  markerfacecolor=series.colour if series.filled else "none", markeredgewidth=0.8,
-                  markersize=series.size)  # fmt: skip
+        axis.plot(
+            x[shown],
+            y[shown],
+            linestyle="none",
+            marker=series.marker,
+            color=series.colour,
+            label=label,
+            markerfacecolor=series.colour if series.filled else "none",
+            markeredgewidth=0.8,
+            markersize=series.size,
+        )

@@ -30,23 +30,25 @@ from painleve.store import check_writable
 
 __all__ = ["draw", "save_figure"]
 
-DRAWINGS: Mapping[str, Callable[[xr.Dataset], Figure]] = MappingProxyType({
-    "distances": draw_distances,
-    "members": draw_members,
-    "gamma_map": draw_gamma_map,
-    "regimes": draw_regimes,
-    "trajectory": draw_trajectory,
-    "step_sizes": draw_step_sizes,
-    "jam_law": draw_jam_law,
-    "initial_layer": draw_initial_layer,
-    "work_precision": draw_work_precision,
-    "sampled_bound": draw_sampled_bound,
-    "rounding": draw_rounding,
-    "near_critical": draw_near_critical,
-    "convergence": draw_convergence,
-    "laws": draw_laws,
-    "reference": draw_reference,
-})  # fmt: skip
+DRAWINGS: Mapping[str, Callable[[xr.Dataset], Figure]] = MappingProxyType(
+    {
+        "distances": draw_distances,
+        "members": draw_members,
+        "gamma_map": draw_gamma_map,
+        "regimes": draw_regimes,
+        "trajectory": draw_trajectory,
+        "step_sizes": draw_step_sizes,
+        "jam_law": draw_jam_law,
+        "initial_layer": draw_initial_layer,
+        "work_precision": draw_work_precision,
+        "sampled_bound": draw_sampled_bound,
+        "rounding": draw_rounding,
+        "near_critical": draw_near_critical,
+        "convergence": draw_convergence,
+        "laws": draw_laws,
+        "reference": draw_reference,
+    }
+)
 # Without dates, the same dataset gives the same bytes.
 WITHOUT_DATE = {"pdf": {"CreationDate": None}, "svg": {"Date": None}, "png": {}}
 

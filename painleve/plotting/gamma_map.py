@@ -25,8 +25,16 @@ def draw_gamma_map(dataset: xr.Dataset) -> Figure:
     levels = np.linspace(-largest, largest, LEVELS)
     for axis, group in zip(axes, groups, strict=True):
         chosen = dataset.isel(state=np.flatnonzero(dataset["panel"] == group))
-        filled = axis.contourf(chosen["path"], chosen["friction"], chosen["gamma"][0].T, levels=levels, cmap="PuOr",
-                               norm=norm, extend="both", alpha=0.75)  # fmt: skip
+        filled = axis.contourf(
+            chosen["path"],
+            chosen["friction"],
+            chosen["gamma"][0].T,
+            levels=levels,
+            cmap="PuOr",
+            norm=norm,
+            extend="both",
+            alpha=0.75,
+        )
         _draw_states(axis, chosen, levels)
         axis.set_xlabel(with_unit(dataset.attrs["path_symbol"], dataset["path"]))
     axes[0].set_ylabel("coefficient of friction $\\mu$")
@@ -46,10 +54,26 @@ def _draw_states(axis: Axes, chosen: xr.Dataset, levels: np.ndarray) -> None:
         axis.plot(path, own, color=PALETTE["blue"], linestyle="--", linewidth=0.9, label="$\\mu$ of the scene")
     for i, label in enumerate(labels_of(chosen["theorem_branch"])):
         mark, x, y = THEOREM_MARKS[label], chosen["state_path"].values[i], chosen["state_friction"].values[i]
-        axis.plot(x, y, marker=mark.marker, color=mark.colour, markersize=7, markeredgecolor="black", linestyle="none",
-                  label=mark.label, zorder=4)  # fmt: skip
-        axis.annotate(spoken(chosen["state"].values[i]), (x, y), textcoords="offset points", xytext=(6, 5),
-                      fontsize=7.5, path_effects=[withStroke(linewidth=2.5, foreground="white")], zorder=5)  # fmt: skip
+        axis.plot(
+            x,
+            y,
+            marker=mark.marker,
+            color=mark.colour,
+            markersize=7,
+            markeredgecolor="black",
+            linestyle="none",
+            label=mark.label,
+            zorder=4,
+        )
+        axis.annotate(
+            spoken(chosen["state"].values[i]),
+            (x, y),
+            textcoords="offset points",
+            xytext=(6, 5),
+            fontsize=7.5,
+            path_effects=[withStroke(linewidth=2.5, foreground="white")],
+            zorder=5,
+        )
     reached = path[np.isfinite(chosen["own_friction"].values[0])]
     axis.set_xlim(reached.min(), reached.max())
     axis.set_ylim(0.0, top)

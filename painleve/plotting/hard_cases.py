@@ -23,17 +23,26 @@ def draw_sampled_bound(dataset: xr.Dataset) -> Figure:
     """Upper bounds on e(A, A_eps) from samples and from witnesses, and how many samples slip."""
     figure, (left, right) = panels(2, columns=2, height=2.9)
     eps = dataset["eps"].values
-    left.axhline(dataset["half_jump"].item(), color=PALETTE["black"], linestyle=":", linewidth=0.9,
-                 label="$\\frac{1}{2}\\|\\tilde u - u^-\\|$: as if no member ever slipped")  # fmt: skip
+    left.axhline(
+        dataset["half_jump"].item(),
+        color=PALETTE["black"],
+        linestyle=":",
+        linewidth=0.9,
+        label="$\\frac{1}{2}\\|\\tilde u - u^-\\|$: as if no member ever slipped",
+    )
     for i, n in enumerate(dataset["samples"].values):
         bound, slips = dataset["sampled_upper"].values[i], dataset["slips"].values[i].astype(float)
         colour, line = COLOURS[i % len(COLOURS)], LINES[i % len(LINES)]
-        left.plot(
-            eps, bound, marker="v", color=colour, linestyle=line, label=f"upper bound, {_power(n)} samples"
-        )
+        left.plot(eps, bound, marker="v", color=colour, linestyle=line, label=f"upper bound, {_power(n)} samples")
         right.plot(eps, np.where(slips > 0.0, slips, np.nan), marker="o", color=colour, linestyle=line)
-    left.plot(eps, dataset["witnessed_upper"], color=PALETTE["green"], marker="v", markerfacecolor="white",
-              label="upper bound, witnesses; the truth is 0")  # fmt: skip
+    left.plot(
+        eps,
+        dataset["witnessed_upper"],
+        color=PALETTE["green"],
+        marker="v",
+        markerfacecolor="white",
+        label="upper bound, witnesses; the truth is 0",
+    )
     for axis in (left, right):
         _logarithmic(axis, dataset)
     left.set_ylabel(with_unit("$e(A, A_\\varepsilon)$", dataset["sampled_upper"]))
@@ -73,10 +82,16 @@ def _draw_errors(axis: Axes, dataset: xr.Dataset) -> None:
 def _draw_wrong(axis: Axes, dataset: xr.Dataset) -> None:
     eps = dataset["eps"].values
     axis.set_yscale("linear")
-    axis.plot(eps, dataset["wrong_sign"], color=PALETTE["blue"], marker="v",
-              label="plain: share of wrong signs of $\\gamma$")  # fmt: skip
-    axis.plot(eps, dataset["witness_error"], color=PALETTE["purple"], marker="P",
-              label="plain: error of $S$ at witnesses, in lengths of $A$")  # fmt: skip
+    axis.plot(
+        eps, dataset["wrong_sign"], color=PALETTE["blue"], marker="v", label="plain: share of wrong signs of $\\gamma$"
+    )
+    axis.plot(
+        eps,
+        dataset["witness_error"],
+        color=PALETTE["purple"],
+        marker="P",
+        label="plain: error of $S$ at witnesses, in lengths of $A$",
+    )
     axis.set_ylim(-0.03, 1.05)
     axis.set_ylabel("share; lengths of $A$")
 
@@ -90,8 +105,16 @@ def _draw_slips(axis: Axes, dataset: xr.Dataset) -> None:
         counts = dataset["counts"].transpose("arithmetic", "eps", "law_branch").values[i][:, slips].sum(axis=1)
         colour, marker, fill, size = styles[str(arithmetic)]
         name, line = ("plain", "-") if arithmetic == "plain" else ("cancellation-free", "--")
-        axis.plot(eps, np.where(counts > 0, counts, np.nan), color=colour, marker=marker, markersize=size,
-                  markerfacecolor=fill or colour, linestyle=line, label=f"{name}: samples that slip")  # fmt: skip
+        axis.plot(
+            eps,
+            np.where(counts > 0, counts, np.nan),
+            color=colour,
+            marker=marker,
+            markersize=size,
+            markerfacecolor=fill or colour,
+            linestyle=line,
+            label=f"{name}: samples that slip",
+        )
     axis.set_ylabel(f"samples that slip, of {_power(total)}")
 
 
@@ -109,9 +132,11 @@ def draw_near_critical(dataset: xr.Dataset) -> Figure:
         axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=2)
     figure.supylabel(with_unit("$d_H(A, A_\\varepsilon)$ as read", dataset["excess_Aeps_A_lower"]), fontsize=8)
     forward, backward = "$e(A_\\varepsilon, A)$", "$e(A, A_\\varepsilon)$"
-    figure.suptitle(f"▲ the lower bound on {forward} decides, ▼ the upper bound on {backward}; filled above the\n"
-                    f"critical value, hollow below; black dot: {backward} is bounded from below too",
-                    fontsize=7.5)  # fmt: skip
+    figure.suptitle(
+        f"▲ the lower bound on {forward} decides, ▼ the upper bound on {backward}; filled above the\n"
+        f"critical value, hollow below; black dot: {backward} is bounded from below too",
+        fontsize=7.5,
+    )
     return figure
 
 

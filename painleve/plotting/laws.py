@@ -52,13 +52,27 @@ def draw_laws(dataset: xr.Dataset) -> Figure:
 def _draw_numbers(axis: Axes, chosen: xr.Dataset) -> None:
     most = len(SHADES)
     axis.pcolormesh(
-        chosen["direction"], chosen["friction"], chosen["solutions"].clip(max=most), cmap=ListedColormap(SHADES),
-        norm=BoundaryNorm(np.arange(most + 1) + 0.5, most), shading="nearest", rasterized=True,
-    )  # fmt: skip
+        chosen["direction"],
+        chosen["friction"],
+        chosen["solutions"].clip(max=most),
+        cmap=ListedColormap(SHADES),
+        norm=BoundaryNorm(np.arange(most + 1) + 0.5, most),
+        shading="nearest",
+        rasterized=True,
+    )
     for number in range(1, min(int(chosen["solutions"].max()), most) + 1):
         label = f"{number} solution{'s' * (number > 1)}" + " or more" * (number == most)
-        axis.plot([], [], marker="s", markersize=8, linestyle="none", color=SHADES[number - 1], markeredgecolor="black",
-                  markeredgewidth=0.4, label=label)  # fmt: skip
+        axis.plot(
+            [],
+            [],
+            marker="s",
+            markersize=8,
+            linestyle="none",
+            color=SHADES[number - 1],
+            markeredgecolor="black",
+            markeredgewidth=0.4,
+            label=label,
+        )
 
 
 def _draw_distances(axis: Axes, chosen: xr.Dataset, levels: np.ndarray) -> QuadContourSet:
@@ -76,5 +90,11 @@ def _draw_edges(axis: Axes, chosen: xr.Dataset) -> None:
     curves = {"driven": ("--", "friction would drive the slip inside"), "projected": (":", "law (7) jumps inside")}
     for name, (line, label) in curves.items():
         for side in (1.0, -1.0):
-            axis.plot(side * chosen[name], chosen["friction"], color=PALETTE["black"], linestyle=line, linewidth=1.3,
-                      label=label)  # fmt: skip
+            axis.plot(
+                side * chosen[name],
+                chosen["friction"],
+                color=PALETTE["black"],
+                linestyle=line,
+                linewidth=1.3,
+                label=label,
+            )

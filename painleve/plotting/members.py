@@ -36,19 +36,42 @@ def draw_members(dataset: xr.Dataset) -> Figure:
 def _draw_panel(axis: Axes, one: xr.Dataset) -> None:
     length, kind = one["jump_length"].item(), labels_of(one["limit_set"]).item()
     if kind == "segment":
-        axis.plot([0.0, length], [0.0, 0.0], color=GREY, linewidth=5.0, alpha=0.35, solid_capstyle="butt",
-                  label="$A = [u^-, \\tilde u]$", zorder=1)  # fmt: skip
+        axis.plot(
+            [0.0, length],
+            [0.0, 0.0],
+            color=GREY,
+            linewidth=5.0,
+            alpha=0.35,
+            solid_capstyle="butt",
+            label="$A = [u^-, \\tilde u]$",
+            zorder=1,
+        )
     branches = labels_of(one["law_branch"])
     for name, mark in LAW_MARKS.items():
         chosen = branches == name
         if chosen.any():
             x, y = one["along"].values[chosen], one["across"].values[chosen]
-            axis.scatter(x, y, s=_size(x, y, branches.size), c=mark.colour, marker=mark.marker, linewidths=0.0,
-                         zorder=2, rasterized=True)  # fmt: skip
+            axis.scatter(
+                x,
+                y,
+                s=_size(x, y, branches.size),
+                c=mark.colour,
+                marker=mark.marker,
+                linewidths=0.0,
+                zorder=2,
+                rasterized=True,
+            )
             axis.plot([], [], linestyle="none", marker=mark.marker, color=mark.colour, label=mark.label)
     if np.isfinite(one["witness_along"]).all() and kind == "segment":
-        axis.plot(one["witness_along"], one["witness_across"], color=PALETTE["black"], linestyle=(0, (2, 2)),
-                  linewidth=0.9, label="witnesses over one $q_\\varepsilon$", zorder=3)  # fmt: skip
+        axis.plot(
+            one["witness_along"],
+            one["witness_across"],
+            color=PALETTE["black"],
+            linestyle=(0, (2, 2)),
+            linewidth=0.9,
+            label="witnesses over one $q_\\varepsilon$",
+            zorder=3,
+        )
     _draw_end(axis, 0.0, "+", "$u^-$")
     if kind != "point":
         _draw_end(axis, length, "x", "$\\tilde u$")
@@ -62,8 +85,17 @@ def _size(x: np.ndarray, y: np.ndarray, of: int) -> float:
 
 
 def _draw_end(axis: Axes, x: float, marker: str, label: str) -> None:
-    axis.plot(x, 0.0, marker=marker, color=PALETTE["black"], markersize=7, markeredgewidth=1.4, linestyle="none",
-              label=label, zorder=4)  # fmt: skip
+    axis.plot(
+        x,
+        0.0,
+        marker=marker,
+        color=PALETTE["black"],
+        markersize=7,
+        markeredgewidth=1.4,
+        linestyle="none",
+        label=label,
+        zorder=4,
+    )
 
 
 def _vector(axis: xr.DataArray) -> str:

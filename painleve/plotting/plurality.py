@@ -37,8 +37,16 @@ def _draw_fractions(axis: Axes, dataset: xr.Dataset, *, wide: bool) -> None:
     for i, contact in enumerate(labels_of(dataset["contact"])):
         f, colour = chosen["fraction"].values[i], COLOURS[contact]
         error = np.abs(np.array([chosen["lower"].values[i], chosen["upper"].values[i]]) - f)
-        axis.errorbar(middle, f, yerr=error, color=colour, marker=MARKERS[contact], linestyle="none", capsize=2,
-                      label=f"{LABELS[contact]} (95 % interval)")  # fmt: skip
+        axis.errorbar(
+            middle,
+            f,
+            yerr=error,
+            color=colour,
+            marker=MARKERS[contact],
+            linestyle="none",
+            capsize=2,
+            label=f"{LABELS[contact]} (95 % interval)",
+        )
         axis.plot(middle, chosen["local_map"].values[i], color=colour, linestyle="--", label=f"local map, {contact}")
         limit = limit_law(dataset["ratio"].item(), strict=contact == "strict")
         axis.axhline(limit, color=colour, linestyle=":", linewidth=0.8, label=f"limit law, {contact}")
@@ -99,10 +107,23 @@ def _draw_ratio(axis: Axes, dataset: xr.Dataset) -> None:
         axis.plot(RATIOS, curve, color=COLOURS[contact], label=f"limit law {law}, 0 for $r \\geq 1$")
         axis.plot([1.0, 2.0], [0.0, 0.0], color=COLOURS[contact], linewidth=2.0 if strict else 1.0)
         one = _of(dataset, "ratio", contact)
-        _bars(axis, one["ratio"].values, one, color=COLOURS[contact], marker=MARKERS[contact],
-              label=f"measured, {LABELS[contact]}")  # fmt: skip
-        axis.plot(one["ratio"], one["local_map"], linestyle="none", marker="x", markersize=7, color=PALETTE["black"],
-                  label="local map at the same $h$")  # fmt: skip
+        _bars(
+            axis,
+            one["ratio"].values,
+            one,
+            color=COLOURS[contact],
+            marker=MARKERS[contact],
+            label=f"measured, {LABELS[contact]}",
+        )
+        axis.plot(
+            one["ratio"],
+            one["local_map"],
+            linestyle="none",
+            marker="x",
+            markersize=7,
+            color=PALETTE["black"],
+            label="local map at the same $h$",
+        )
     axis.set_xlabel("ratio of the eigenvalues $r$")
     axis.set_ylabel("fraction that jams")
     axis.set_title("over step sizes and starts, smallest $h$")
@@ -174,7 +195,20 @@ def draw_initial_layer(dataset: xr.Dataset) -> Figure:
 def _draw_layer(above: Axes, below: Axes, one: xr.Dataset, colour: str, marker: str) -> None:
     ratio, step = one["ratio"].values, one["step"].item()
     _bars(above, ratio, one, color=colour, marker=marker, label=f"$h$ = {step:g} s")
-    below.plot(ratio, one["excess_from_A"], color=colour, marker="^", linestyle="none",
-               label="of right velocities from $A$, lower bound")  # fmt: skip
-    below.plot(ratio, one["excess_of_A"], color=colour, marker="v", markerfacecolor="none", linestyle="none",
-               label="of $A$ from right velocities, upper bound")  # fmt: skip
+    below.plot(
+        ratio,
+        one["excess_from_A"],
+        color=colour,
+        marker="^",
+        linestyle="none",
+        label="of right velocities from $A$, lower bound",
+    )
+    below.plot(
+        ratio,
+        one["excess_of_A"],
+        color=colour,
+        marker="v",
+        markerfacecolor="none",
+        linestyle="none",
+        label="of $A$ from right velocities, upper bound",
+    )

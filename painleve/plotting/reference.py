@@ -28,18 +28,38 @@ def draw_reference(dataset: xr.Dataset) -> Figure:
 def _draw_friction(axis: Axes, dataset: xr.Dataset) -> None:
     degrees = np.degrees(dataset["theta"].values)
     for i, (alpha, (colour, dash)) in enumerate(zip(dataset["alpha"].values, ROD_STYLES, strict=True)):
-        axis.plot(degrees, dataset["critical_friction"][i], color=PALETTE[colour], linestyle=dash,
-                  linewidth=1.8 if alpha == UNIFORM else 1.0, label=f"$\\mu_c$, $\\alpha$ = {alpha:g}")  # fmt: skip
+        axis.plot(
+            degrees,
+            dataset["critical_friction"][i],
+            color=PALETTE[colour],
+            linestyle=dash,
+            linewidth=1.8 if alpha == UNIFORM else 1.0,
+            label=f"$\\mu_c$, $\\alpha$ = {alpha:g}",
+        )
     marks: dict[str, Any] = {"markeredgecolor": "black", "linestyle": "none", "zorder": 4}
-    axis.plot(np.degrees(dataset["least_friction_angle"]), dataset["least_friction"], marker="o",
-              color=PALETTE["vermilion"], label="$\\mu_P$, reference", **marks)  # fmt: skip
+    axis.plot(
+        np.degrees(dataset["least_friction_angle"]),
+        dataset["least_friction"],
+        marker="o",
+        color=PALETTE["vermilion"],
+        label="$\\mu_P$, reference",
+        **marks,
+    )
     for edges in np.degrees(dataset["edges"]):
-        axis.plot(edges, dataset["edge_friction"], marker="s", color=PALETTE["sky"], label="band edge, reference",
-                  **marks)  # fmt: skip
-    axis.plot(60.0, dataset["sixty_degrees_friction"], marker="D", color=PALETTE["yellow"],
-              label="rod at 60°, reference", **marks)  # fmt: skip
-    axis.axhline(float(dataset["singular_friction"]), color=GREY, linewidth=0.8,
-                 label="$\\mu_C$, reference ($\\alpha$ = 3)")  # fmt: skip
+        axis.plot(
+            edges, dataset["edge_friction"], marker="s", color=PALETTE["sky"], label="band edge, reference", **marks
+        )
+    axis.plot(
+        60.0,
+        dataset["sixty_degrees_friction"],
+        marker="D",
+        color=PALETTE["yellow"],
+        label="rod at 60°, reference",
+        **marks,
+    )
+    axis.axhline(
+        float(dataset["singular_friction"]), color=GREY, linewidth=0.8, label="$\\mu_C$, reference ($\\alpha$ = 3)"
+    )
     axis.set_ylim(0.0, 4.0)
     axis.set_xlim(0.0, 90.0)
     axis.set_xticks(range(0, 91, 15))
@@ -55,8 +75,14 @@ def _draw_forces(axis: Axes, dataset: xr.Dataset) -> None:
     for mu, force in zip(dataset["slip_friction"].values, dataset["slip_force"].values, strict=True):
         colour, dash = ("blue", "--") if mu < below else ("vermilion", "-")
         side = "below" if mu < below else "above"
-        axis.plot(dataset["distance"], force, color=PALETTE[colour], linestyle=dash, linewidth=0.8,
-                  label=f"$\\mu$ = {mu:.3g}, {side} $\\mu_C$")  # fmt: skip
+        axis.plot(
+            dataset["distance"],
+            force,
+            color=PALETTE[colour],
+            linestyle=dash,
+            linewidth=0.8,
+            label=f"$\\mu$ = {mu:.3g}, {side} $\\mu_C$",
+        )
     axis.set_xscale("log")
     axis.set_yscale("log")
     axis.set_ylim(1e-2, 1e5)

@@ -31,18 +31,42 @@ __all__ = [
 ]
 
 # M. Okabe and K. Ito, "Color Universal Design" (2008), and a violet that is darker than all of theirs.
-PALETTE = MappingProxyType({
-    "black": "#000000", "orange": "#E69F00", "sky": "#56B4E9", "green": "#009E73", "yellow": "#F0E442",
-    "blue": "#0072B2", "vermilion": "#D55E00", "purple": "#CC79A7", "violet": "#4B0092",
-})  # fmt: skip
+PALETTE = MappingProxyType(
+    {
+        "black": "#000000",
+        "orange": "#E69F00",
+        "sky": "#56B4E9",
+        "green": "#009E73",
+        "yellow": "#F0E442",
+        "blue": "#0072B2",
+        "vermilion": "#D55E00",
+        "purple": "#CC79A7",
+        "violet": "#4B0092",
+    }
+)
 GREY = "#777777"
 # Any: matplotlib's own type of such a table is a list of all its keys.
-STYLE: Any = MappingProxyType({
-    "font.size": 8.0, "axes.titlesize": 8.0, "axes.labelsize": 8.0, "legend.fontsize": 7.5, "xtick.labelsize": 7.0,
-    "ytick.labelsize": 7.0, "axes.linewidth": 0.6, "lines.linewidth": 1.0, "lines.markersize": 4.0,
-    "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False, "figure.dpi": 110,
-    "savefig.dpi": 300, "pdf.fonttype": 42, "mathtext.fontset": "dejavusans", "hatch.linewidth": 0.4,
-})  # fmt: skip
+STYLE: Any = MappingProxyType(
+    {
+        "font.size": 8.0,
+        "axes.titlesize": 8.0,
+        "axes.labelsize": 8.0,
+        "legend.fontsize": 7.5,
+        "xtick.labelsize": 7.0,
+        "ytick.labelsize": 7.0,
+        "axes.linewidth": 0.6,
+        "lines.linewidth": 1.0,
+        "lines.markersize": 4.0,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "legend.frameon": False,
+        "figure.dpi": 110,
+        "savefig.dpi": 300,
+        "pdf.fonttype": 42,
+        "mathtext.fontset": "dejavusans",
+        "hatch.linewidth": 0.4,
+    }
+)
 MOST_PANELS = 24
 WIDTH = 7.0  # inches: two columns of a journal
 
@@ -56,21 +80,25 @@ class Mark:
     label: str
 
 
-LAW_MARKS = MappingProxyType({
-    "free": Mark(colour=PALETTE["sky"], marker="o", label="free: S = v"),
-    "stick": Mark(colour=PALETTE["orange"], marker="s", label="stick"),
-    "slip_plus": Mark(colour=PALETTE["green"], marker="^", label="slip, friction +μ"),
-    "slip_minus": Mark(colour=PALETTE["purple"], marker="v", label="slip, friction −μ"),
-    "slip": Mark(colour=PALETTE["violet"], marker="p", label="slip"),
-    "frictionless": Mark(colour=PALETTE["blue"], marker="D", label="impact without friction"),
-})  # fmt: skip
-THEOREM_MARKS = MappingProxyType({
-    "none": Mark(colour=PALETTE["sky"], marker="o", label="nothing indeterminate"),
-    "negative": Mark(colour=PALETTE["vermilion"], marker="s", label="γ < 0"),
-    "critical_approached": Mark(colour=PALETTE["green"], marker="^", label="γ = 0, approached"),
-    "critical_isolated": Mark(colour=PALETTE["yellow"], marker="D", label="γ = 0, isolated"),
-    "undecided": Mark(colour=GREY, marker="X", label="undecided"),
-})  # fmt: skip
+LAW_MARKS = MappingProxyType(
+    {
+        "free": Mark(colour=PALETTE["sky"], marker="o", label="free: S = v"),
+        "stick": Mark(colour=PALETTE["orange"], marker="s", label="stick"),
+        "slip_plus": Mark(colour=PALETTE["green"], marker="^", label="slip, friction +μ"),
+        "slip_minus": Mark(colour=PALETTE["purple"], marker="v", label="slip, friction −μ"),
+        "slip": Mark(colour=PALETTE["violet"], marker="p", label="slip"),
+        "frictionless": Mark(colour=PALETTE["blue"], marker="D", label="impact without friction"),
+    }
+)
+THEOREM_MARKS = MappingProxyType(
+    {
+        "none": Mark(colour=PALETTE["sky"], marker="o", label="nothing indeterminate"),
+        "negative": Mark(colour=PALETTE["vermilion"], marker="s", label="γ < 0"),
+        "critical_approached": Mark(colour=PALETTE["green"], marker="^", label="γ = 0, approached"),
+        "critical_isolated": Mark(colour=PALETTE["yellow"], marker="D", label="γ = 0, isolated"),
+        "undecided": Mark(colour=GREY, marker="X", label="undecided"),
+    }
+)
 
 
 def labels_of(code: xr.DataArray) -> np.ndarray:

@@ -38,17 +38,23 @@ class Curve:
 # Panels from the top, with the label of their axis; a curve is drawn if the dataset has it.
 CURVES = (
     ("$\\gamma$", (Curve(name="gamma", label="$\\gamma$", colour=PALETTE["purple"]),)),
-    ("velocity", (
-        Curve(name="v_n", label="contact point, normal $v_n$", colour=PALETTE["blue"]),
-        Curve(name="v_t", label="contact point, tangential $v_t$", colour=PALETTE["orange"], style="--"),
-        Curve(name="v_t1", label="contact point, tangential $v_{t1}$", colour=PALETTE["orange"], style="--"),
-        Curve(name="v_t2", label="contact point, tangential $v_{t2}$", colour=PALETTE["green"], style="-."),
-    )),
-    ("energy", (
-        Curve(name="kinetic_energy", label="kinetic energy", colour=PALETTE["green"]),
-        Curve(name="contact_work", label="work of the contact", colour=PALETTE["black"], style="--"),
-    )),
-)  # fmt: skip
+    (
+        "velocity",
+        (
+            Curve(name="v_n", label="contact point, normal $v_n$", colour=PALETTE["blue"]),
+            Curve(name="v_t", label="contact point, tangential $v_t$", colour=PALETTE["orange"], style="--"),
+            Curve(name="v_t1", label="contact point, tangential $v_{t1}$", colour=PALETTE["orange"], style="--"),
+            Curve(name="v_t2", label="contact point, tangential $v_{t2}$", colour=PALETTE["green"], style="-."),
+        ),
+    ),
+    (
+        "energy",
+        (
+            Curve(name="kinetic_energy", label="kinetic energy", colour=PALETTE["green"]),
+            Curve(name="contact_work", label="work of the contact", colour=PALETTE["black"], style="--"),
+        ),
+    ),
+)
 
 
 def draw_trajectory(dataset: xr.Dataset) -> Figure:
@@ -81,8 +87,9 @@ def spaced(time: np.ndarray, count: int) -> np.ndarray:
 def draw_body(axis: Axes, dataset: xr.Dataset, index: int, shade: float, label: str | None = None) -> Line2D:
     """The outline at one instant, with its joints, in a grey between 0 and 1."""
     x, y = dataset["outline_x"].values[index], dataset["outline_y"].values[index]
-    (line,) = axis.plot(x, y, color=str(shade), linewidth=1.8, marker="o", markersize=2.5, solid_capstyle="round",
-                        label=label)  # fmt: skip
+    (line,) = axis.plot(
+        x, y, color=str(shade), linewidth=1.8, marker="o", markersize=2.5, solid_capstyle="round", label=label
+    )
     return line
 
 
@@ -121,7 +128,15 @@ def _draw_panel(axis: Axes, dataset: xr.Dataset, label: str, curves: tuple[Curve
     for kind, (name, colour, style) in JUMPS.items():
         times = dataset["time"].values[kinds == kind]
         if times.size:
-            axis.vlines(times, 0.0, 1.0, transform=axis.get_xaxis_transform(), colors=colour, linestyles=style,
-                        linewidths=0.9, label=name)  # fmt: skip
+            axis.vlines(
+                times,
+                0.0,
+                1.0,
+                transform=axis.get_xaxis_transform(),
+                colors=colour,
+                linestyles=style,
+                linewidths=0.9,
+                label=name,
+            )
     axis.locator_params(axis="y", nbins=5)
     axis.set_ylabel(with_unit(label, dataset[curves[0].name]))

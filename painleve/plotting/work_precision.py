@@ -14,14 +14,16 @@ from painleve.plotting.style import GREY, PALETTE, Mark, labels_of, legend_below
 
 __all__ = ["draw_work_precision"]
 
-SERIES: Mapping[str, Mark] = MappingProxyType({
-    "naive NumPy": Mark(colour=PALETTE["black"], marker="D", label="naive NumPy, uniform"),
-    "sample, uniform": Mark(colour=PALETTE["orange"], marker="o", label="sample, uniform"),
-    "sample, kronecker": Mark(colour=PALETTE["blue"], marker="s", label="sample, Kronecker"),
-    "sample, boundary": Mark(colour=PALETTE["purple"], marker="^", label="sample, boundary"),
-    "optimise": Mark(colour=PALETTE["green"], marker="*", label="optimise"),
-    "certify": Mark(colour=PALETTE["vermilion"], marker="P", label="certify (error proved by the run)"),
-})  # fmt: skip
+SERIES: Mapping[str, Mark] = MappingProxyType(
+    {
+        "naive NumPy": Mark(colour=PALETTE["black"], marker="D", label="naive NumPy, uniform"),
+        "sample, uniform": Mark(colour=PALETTE["orange"], marker="o", label="sample, uniform"),
+        "sample, kronecker": Mark(colour=PALETTE["blue"], marker="s", label="sample, Kronecker"),
+        "sample, boundary": Mark(colour=PALETTE["purple"], marker="^", label="sample, boundary"),
+        "optimise": Mark(colour=PALETTE["green"], marker="*", label="optimise"),
+        "certify": Mark(colour=PALETTE["vermilion"], marker="P", label="certify (error proved by the run)"),
+    }
+)
 WORK = {"seconds": "wall time of a warm run (s)", "evaluations": "evaluations of the law, or boxes bounded"}
 STRIP = 0.04  # of an axis: where failed runs stand
 FLOOR, CEILING = 1e-12, 1e4
@@ -66,21 +68,44 @@ def _draw_panel(axis: Axes, one: xr.Dataset, work: str) -> None:
         axis.plot(x[own], error[own], color=mark.colour, linewidth=0.7, alpha=0.6, zorder=2)
         fair, hollow = own & (outcomes == "done"), own & misleads
         for chosen, fill, label in ((fair, mark.colour, mark.label), (hollow, "white", None)):
-            axis.plot(x[chosen], error[chosen], linestyle="none", marker=mark.marker, color=mark.colour,
-                      markersize=size, markerfacecolor=fill, label=label, zorder=3)  # fmt: skip
+            axis.plot(
+                x[chosen],
+                error[chosen],
+                linestyle="none",
+                marker=mark.marker,
+                color=mark.colour,
+                markersize=size,
+                markerfacecolor=fill,
+                label=label,
+                zorder=3,
+            )
     _draw_verdicts(axis, one, outcomes)
 
 
 def _draw_verdicts(axis: Axes, one: xr.Dataset, outcomes: np.ndarray) -> None:
     """Legend entries of what hollow marks mean, and the failed runs along the lower edge."""
-    axis.plot([], [], linestyle="none", marker="o", color=PALETTE["black"], markerfacecolor="white",
-              label="hollow: misleading, off by > 2")  # fmt: skip
+    axis.plot(
+        [],
+        [],
+        linestyle="none",
+        marker="o",
+        color=PALETTE["black"],
+        markerfacecolor="white",
+        label="hollow: misleading, off by > 2",
+    )
     failed = outcomes == "failed"
     if not failed.any():
         return
     x = np.where(failed, one["first_seconds"].values, np.nan)[failed]
-    axis.plot(x, np.full(failed.sum(), STRIP), linestyle="none", marker="x", color=PALETTE["black"],
-              transform=axis.get_xaxis_transform(), label="failed")  # fmt: skip
+    axis.plot(
+        x,
+        np.full(failed.sum(), STRIP),
+        linestyle="none",
+        marker="x",
+        color=PALETTE["black"],
+        transform=axis.get_xaxis_transform(),
+        label="failed",
+    )
 
 
 def _share_axes(axes: list[Axes], dataset: xr.Dataset) -> None:

@@ -132,12 +132,14 @@ def sweep_convergence(
         "control": coded(
             ["run"], np.array([code(t.control, CONTROLS) for t in layout]), CONTROLS, "what the run is controlled by"
         ),
-    }  # fmt: skip
+    }
     scenes = list(dict.fromkeys(p.start().scene for p in problems))
     source = provenance(
-        scene=", ".join(s.name for s in scenes), seed=seed, command=command,
+        scene=", ".join(s.name for s in scenes),
+        seed=seed,
+        command=command,
         scene_digest=", ".join(make_motion(s).digest for s in scenes),
-    )  # fmt: skip
+    )
     title = "Errors of schemes on motions with contact, as distances of graphs in (t, u)"
     attributes = {"title": title, "kind": "convergence", "velocity_units": _units(scenes), **source}
     return xr.Dataset(variables, coordinates, attributes)
@@ -158,14 +160,24 @@ def _trials(problem: Problem, start: Start, effort: Effort, seed: int) -> Iterat
     for name in SCHEME_NAMES:
         if isinstance(load_scheme(name), Stepped):
             for level, steps in _step_numbers(effort, seed):
-                yield _Trial(scheme=name, level=level, control="step", value=until / steps,
-                             run=_runner(start, name, until / steps, until))  # fmt: skip
+                yield _Trial(
+                    scheme=name,
+                    level=level,
+                    control="step",
+                    value=until / steps,
+                    run=_runner(start, name, until / steps, until),
+                )
         elif name == "event_driven":
             for level, tolerance in enumerate(effort.tolerances):
                 options = {"rtol": tolerance, "atol": tolerance / 100.0}
-                yield _Trial(scheme=name, level=level, control="tolerance", value=tolerance,
-                             run=_runner(start, name, until, until, options),
-                             recorded=_runner(start, name, until / effort.instants, until, options))  # fmt: skip
+                yield _Trial(
+                    scheme=name,
+                    level=level,
+                    control="tolerance",
+                    value=tolerance,
+                    run=_runner(start, name, until, until, options),
+                    recorded=_runner(start, name, until / effort.instants, until, options),
+                )
         else:
             for level, stiffness in enumerate(effort.stiffnesses):
                 yield _compliant(start, name, level, stiffness, until)
@@ -185,8 +197,13 @@ def _compliant(start: Start, name: str, level: int, stiffness: float, until: flo
     contact_time = 1.0 / math.sqrt(a * stiffness)
     options = {"stiffness": stiffness, "slip_speed": contact_time, "rtol": 1e-6, "atol": 1e-9}
     step = until / math.ceil(2.0 * until / contact_time)
-    return _Trial(scheme=name, level=level, control="contact_time", value=contact_time,
-                  run=_runner(start, name, step, until, options))  # fmt: skip
+    return _Trial(
+        scheme=name,
+        level=level,
+        control="contact_time",
+        value=contact_time,
+        run=_runner(start, name, step, until, options),
+    )
 
 
 def _runner(
@@ -209,8 +226,15 @@ def _record(
         lower, upper = bounds.lower, bounds.upper
     if progress is not None:
         progress(label)
-    return _Record(value=trial.value, lower=lower, upper=upper, first_seconds=timing.first_seconds,
-                   seconds=timing.seconds, done=done, sentence=found.sentence)  # fmt: skip
+    return _Record(
+        value=trial.value,
+        lower=lower,
+        upper=upper,
+        first_seconds=timing.first_seconds,
+        seconds=timing.seconds,
+        done=done,
+        sentence=found.sentence,
+    )
 
 
 def _orders(
@@ -235,7 +259,7 @@ def _orders(
         "expected_order": _number(
             ["scheme"], np.full(len(stated), EXPECTED_ORDER), "order expected where contacts change", "1"
         ),
-    }  # fmt: skip
+    }
 
 
 def _judge(
@@ -244,8 +268,10 @@ def _judge(
     """The slope of log error against log control through the worst run of each level, and what it says."""
     if not all(r.done for r in runs):
         return math.nan, math.nan, Convergence.FAILED
-    worst = [max((r for r, at in zip(runs, levels, strict=True) if at == level), key=lambda r: r.upper)
-             for level in np.unique(levels)]  # fmt: skip
+    worst = [
+        max((r for r, at in zip(runs, levels, strict=True) if at == level), key=lambda r: r.upper)
+        for level in np.unique(levels)
+    ]
     fitted = [r for r in worst if r.upper > RESOLVED * resolution]
     if len(fitted) < LEAST_LEVELS:
         return math.nan, math.nan, Convergence.UNRESOLVED
@@ -298,7 +324,7 @@ def _problem_variables(
         "resolution": _number(dims, resolution, "how far the reference moves with its tolerance, an estimate", unit),
         "chords": _number(dims, chords, "how far it moves at half as many instants, an estimate", unit),
         "compile_seconds": _number(dims, np.array(compiling), "wall time to compile or load the scene's steps", "s"),
-    }  # fmt: skip
+    }
 
 
 def _units(scenes: Sequence[Scene]) -> str:

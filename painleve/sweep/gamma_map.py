@@ -68,9 +68,11 @@ def map_gamma(
     coordinate = scene.coordinates[shape[0]]
     path, friction, variables = _evaluate(kernels, [c.limit.state for c in classified], points)
     variables["theorem_branch"] = coded(
-        ["state"], np.array([code(c.branch.value, BRANCHES) for c in classified]), BRANCHES,
+        ["state"],
+        np.array([code(c.branch.value, BRANCHES) for c in classified]),
+        BRANCHES,
         "branch of Theorem 1, by exact arithmetic",
-    )  # fmt: skip
+    )
     attributes = {
         "title": f"gamma and the critical friction of {scene.name}: {scene.sentence}",
         "kind": "gamma_map",

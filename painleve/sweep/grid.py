@@ -94,10 +94,14 @@ def make_grid(
     if len(set(labels)) < len(labels):
         raise InputError(f"sweep: a state is named twice in {', '.join(states)}; name each once")
     return Grid(
-        scene=scene, labels=labels, names=tuple(states) or (None,), keys=MappingProxyType(dict(keys or {})),
-        parameters=MappingProxyType(dict(parameters or {})), over=MappingProxyType(exact),
+        scene=scene,
+        labels=labels,
+        names=tuple(states) or (None,),
+        keys=MappingProxyType(dict(keys or {})),
+        parameters=MappingProxyType(dict(parameters or {})),
+        over=MappingProxyType(exact),
         spelled=MappingProxyType(spelled),
-    )  # fmt: skip
+    )
 
 
 def _is_key(scene: Scene, name: str) -> bool:

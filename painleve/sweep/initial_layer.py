@@ -27,9 +27,15 @@ FOLLOWED = 1.6  # sqrt(s)
 
 
 def sweep_initial_layer(
-    states: Mapping[str, State], *, steps: Sequence[float], ratios: Sequence[float], count: int, seed: int = 0,
-    progress: Callable[[int], None] | None = None, command: str | None = None,
-) -> xr.Dataset:  # fmt: skip
+    states: Mapping[str, State],
+    *,
+    steps: Sequence[float],
+    ratios: Sequence[float],
+    count: int,
+    seed: int = 0,
+    progress: Callable[[int], None] | None = None,
+    command: str | None = None,
+) -> xr.Dataset:
     """Fractions that jump and distances to A over eps/h, by label of the state; (state, step, ratio).
 
     Initial states are uniform in the balls of radius eps = ratio * h about q and u-, as in the paper's A_eps, whether
@@ -84,9 +90,14 @@ def _right_velocities(start: Start, h: float, eps: float, count: int, seed: int)
 
 
 def _dataset(
-    states: Mapping[str, State], steps: Sequence[float], ratios: Sequence[float], values: dict[str, np.ndarray],
-    count: int, seed: int, command: str | None,
-) -> xr.Dataset:  # fmt: skip
+    states: Mapping[str, State],
+    steps: Sequence[float],
+    ratios: Sequence[float],
+    values: dict[str, np.ndarray],
+    count: int,
+    seed: int,
+    command: str | None,
+) -> xr.Dataset:
     scene, dims = next(iter(states.values())).scene, ("state", "step", "ratio")
     unit = velocity_unit(scene)
     sentences = {
@@ -104,9 +115,12 @@ def _dataset(
     coordinates = {
         "state": text(["state"], list(states), "label of the state"),
         "step": xr.Variable(("step",), np.array(steps), {"long_name": "step size of all members", "units": "s"}),
-        "ratio": xr.Variable(("ratio",), np.array(ratios), {
-            "long_name": f"radius eps of the balls ({ball_unit(scene)}) over the step size", "units": "1/s"}),
-    }  # fmt: skip
+        "ratio": xr.Variable(
+            ("ratio",),
+            np.array(ratios),
+            {"long_name": f"radius eps of the balls ({ball_unit(scene)}) over the step size", "units": "1/s"},
+        ),
+    }
     source = provenance(scene=scene, scene_digest=make_motion(scene).digest, seed=seed, command=command)
     title = f"The initial layer of {scene.name} at tangential states with gamma < 0"
     return xr.Dataset(variables, coordinates, {"title": title, "kind": "initial_layer", **source})

@@ -129,17 +129,27 @@ class JamCase:
         ensembles = []
         for j, distance in enumerate(middle * (1.0 + SPREAD * (2.0 * (np.arange(STARTS) + within) / STARTS - 1.0))):
             start = point.start(distance=float(distance), amplitude=self.amplitude, slip=self.slip)
-            ensembles.append(run_ensemble(
-                start, step=self.step, count=-(-self.count // STARTS), until=LONGEST * distance / point.omega,
-                seed=STARTS * seed + j, window=window, contact_tolerance=0.0 if self.strict else KEPT_TOLERANCE,
-            ))  # fmt: skip
+            ensembles.append(
+                run_ensemble(
+                    start,
+                    step=self.step,
+                    count=-(-self.count // STARTS),
+                    until=LONGEST * distance / point.omega,
+                    seed=STARTS * seed + j,
+                    window=window,
+                    contact_tolerance=0.0 if self.strict else KEPT_TOLERANCE,
+                )
+            )
         return Fraction.of(ensembles)
 
 
 def measure_jam_law(
-    cases: Sequence[JamCase], *, seed: int = 0, progress: Callable[[int], None] | None = None,
+    cases: Sequence[JamCase],
+    *,
+    seed: int = 0,
+    progress: Callable[[int], None] | None = None,
     command: str | None = None,
-) -> xr.Dataset:  # fmt: skip
+) -> xr.Dataset:
     """Fractions that jam over step sizes and starts, with 95 % intervals, beside the limit law and the map; (case,).
 
     A jam is a jump at a tangential contact. A member that has not jammed long after the edge has opened (beta > 0 from
@@ -171,7 +181,7 @@ def measure_jam_law(
         "count": ([f.count for f in fractions], "number of members, each with its step size", "1"),
         "effective_count": ([f.effective for f in fractions], "independent members worth as much", "1"),
         "others": ([f.others for f in fractions], "members that neither jam nor open the contact", "1"),
-    }  # fmt: skip
+    }
     variables: dict[str, xr.Variable] = {
         name: xr.Variable(("case",), np.asarray(column), {"long_name": sentence, "units": unit})
         for name, (column, sentence, unit) in values.items()

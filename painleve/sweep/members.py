@@ -82,18 +82,22 @@ def _picture(limit: LimitSet, radii: list[float], options: SampleOptions) -> xr.
     def number(dims: tuple[str, ...], values: np.ndarray, sentence: str, units: str = unit) -> xr.Variable:
         return xr.Variable(dims, values, {"units": units, "long_name": sentence})
 
-    return xr.Dataset({
-        "offset": number((*cloud, "coordinate"), offsets, "sampled member S(q_eps, v_eps) of A_eps, minus u-"),
-        "law_branch": coded(cloud, codes, LAW_BRANCHES, "branch of the law at the sampled member"),
-        "along": number(cloud, projected[..., 0], "component of the member's offset along the first axis"),
-        "across": number(cloud, projected[..., 1], "component of the member's offset along the second axis"),
-        "witness_along": number(("eps", "end"), witnesses[..., 0], "witness at an end of A, along the first axis"),
-        "witness_across": number(("eps", "end"), witnesses[..., 1], "witness at an end of A, along the second axis"),
-        "axis_along": number(("coordinate",), axes[0], "first axis, a unit vector: the jump u_tilde - u-", "1"),
-        "axis_across": number(("coordinate",), axes[1], "second axis, a unit vector: the largest spread", "1"),
-        "jump_length": number((), np.array(np.linalg.norm(limit.jump)), "distance between u- and u_tilde"),
-        "limit_set": coded((), np.array(code(limit.kind, LIMIT_SETS)), LIMIT_SETS, "what kind of set A is"),
-    })  # fmt: skip
+    return xr.Dataset(
+        {
+            "offset": number((*cloud, "coordinate"), offsets, "sampled member S(q_eps, v_eps) of A_eps, minus u-"),
+            "law_branch": coded(cloud, codes, LAW_BRANCHES, "branch of the law at the sampled member"),
+            "along": number(cloud, projected[..., 0], "component of the member's offset along the first axis"),
+            "across": number(cloud, projected[..., 1], "component of the member's offset along the second axis"),
+            "witness_along": number(("eps", "end"), witnesses[..., 0], "witness at an end of A, along the first axis"),
+            "witness_across": number(
+                ("eps", "end"), witnesses[..., 1], "witness at an end of A, along the second axis"
+            ),
+            "axis_along": number(("coordinate",), axes[0], "first axis, a unit vector: the jump u_tilde - u-", "1"),
+            "axis_across": number(("coordinate",), axes[1], "second axis, a unit vector: the largest spread", "1"),
+            "jump_length": number((), np.array(np.linalg.norm(limit.jump)), "distance between u- and u_tilde"),
+            "limit_set": coded((), np.array(code(limit.kind, LIMIT_SETS)), LIMIT_SETS, "what kind of set A is"),
+        }
+    )
 
 
 def _axes(jump: np.ndarray, offsets: np.ndarray) -> np.ndarray:

@@ -96,8 +96,10 @@ def _event_driven(problem: Problem, instants: int, options: dict[str, float]) ->
 @cache
 def point_mass() -> Scene:
     """A point over a floor, M = m Id with m = 2 kg."""
-    x, y = (Coordinate(name="x", unit="m", sentence="place along the floor"),
-            Coordinate(name="y", unit="m", sentence="height above the floor"))  # fmt: skip
+    x, y = (
+        Coordinate(name="x", unit="m", sentence="place along the floor"),
+        Coordinate(name="y", unit="m", sentence="height above the floor"),
+    )
     m = Parameter(name="m", unit="kg", sentence="mass of the point", default="2")
     mu = Parameter(name="mu", unit="1", sentence="Coulomb's coefficient of friction", default="0", range="nonnegative")
     return make_scene(
@@ -134,9 +136,11 @@ def _point_vertices(speed: float, height: float, mu: float, until: float) -> Flo
 
 def _rod_fall(angle: str, mu: str) -> Start:
     return make_start(
-        load_scene("slender_rod"), q={"x": 0, "y": f"sin({angle}) + 1/4", "theta": angle}, u={"x": -1},
+        load_scene("slender_rod"),
+        q={"x": 0, "y": f"sin({angle}) + 1/4", "theta": angle},
+        u={"x": -1},
         parameters={"mu": mu},
-    )  # fmt: skip
+    )
 
 
 def _rod_slide() -> Start:
@@ -154,23 +158,63 @@ def _arm_slide() -> Start:
 
 
 PROBLEMS = (
-    Problem(name="point_impact", sentence="point mass: impact without friction or rebound",
-            situation=Situation.SCALAR_INERTIA, until=0.5, start=lambda: _point("1", "1/2", "0"),
-            closed_form=lambda: _point_vertices(1.0, 0.5, 0.0, 0.5)),
-    Problem(name="point_stick", sentence="point mass: slip to stick",
-            situation=Situation.SCALAR_INERTIA, until=1.0, start=lambda: _point("2", "0", "1/4"),
-            closed_form=lambda: _point_vertices(2.0, 0.0, 0.25, 1.0)),
-    Problem(name="point_fall", sentence="point mass: frictional impact, slip, stick",
-            situation=Situation.SCALAR_INERTIA, until=0.8, start=lambda: _point("3", "1/4", "1/2"),
-            closed_form=lambda: _point_vertices(3.0, 0.25, 0.5, 0.8)),
-    Problem(name="rod_impact", sentence="rod, mu = 0: impact, then sliding",
-            situation=Situation.FRICTIONLESS, until=0.5, start=lambda: _rod_fall("pi/3", "0")),
-    Problem(name="arm_impact", sentence="arm, M(q), mu = 0: impact, then sliding",
-            situation=Situation.FRICTIONLESS, until=0.6, start=_arm_fall),
-    Problem(name="rod_slide", sentence="rod, mu = 0.3: smooth sliding",
-            situation=Situation.ANY_INERTIA, until=0.5, start=_rod_slide),
-    Problem(name="rod_fall", sentence="rod, mu = 0.5: frictional impact, slip",
-            situation=Situation.ANY_INERTIA, until=0.5, start=lambda: _rod_fall("pi/4", "1/2")),
-    Problem(name="arm_stick", sentence="arm, M(q), mu = 0.4: slip to stick",
-            situation=Situation.ANY_INERTIA, until=0.6, start=_arm_slide),
-)  # fmt: skip
+    Problem(
+        name="point_impact",
+        sentence="point mass: impact without friction or rebound",
+        situation=Situation.SCALAR_INERTIA,
+        until=0.5,
+        start=lambda: _point("1", "1/2", "0"),
+        closed_form=lambda: _point_vertices(1.0, 0.5, 0.0, 0.5),
+    ),
+    Problem(
+        name="point_stick",
+        sentence="point mass: slip to stick",
+        situation=Situation.SCALAR_INERTIA,
+        until=1.0,
+        start=lambda: _point("2", "0", "1/4"),
+        closed_form=lambda: _point_vertices(2.0, 0.0, 0.25, 1.0),
+    ),
+    Problem(
+        name="point_fall",
+        sentence="point mass: frictional impact, slip, stick",
+        situation=Situation.SCALAR_INERTIA,
+        until=0.8,
+        start=lambda: _point("3", "1/4", "1/2"),
+        closed_form=lambda: _point_vertices(3.0, 0.25, 0.5, 0.8),
+    ),
+    Problem(
+        name="rod_impact",
+        sentence="rod, mu = 0: impact, then sliding",
+        situation=Situation.FRICTIONLESS,
+        until=0.5,
+        start=lambda: _rod_fall("pi/3", "0"),
+    ),
+    Problem(
+        name="arm_impact",
+        sentence="arm, M(q), mu = 0: impact, then sliding",
+        situation=Situation.FRICTIONLESS,
+        until=0.6,
+        start=_arm_fall,
+    ),
+    Problem(
+        name="rod_slide",
+        sentence="rod, mu = 0.3: smooth sliding",
+        situation=Situation.ANY_INERTIA,
+        until=0.5,
+        start=_rod_slide,
+    ),
+    Problem(
+        name="rod_fall",
+        sentence="rod, mu = 0.5: frictional impact, slip",
+        situation=Situation.ANY_INERTIA,
+        until=0.5,
+        start=lambda: _rod_fall("pi/4", "1/2"),
+    ),
+    Problem(
+        name="arm_stick",
+        sentence="arm, M(q), mu = 0.4: slip to stick",
+        situation=Situation.ANY_INERTIA,
+        until=0.6,
+        start=_arm_slide,
+    ),
+)

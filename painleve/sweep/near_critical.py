@@ -65,9 +65,11 @@ def sweep_near_critical(
     dataset = xr.concat(parts, "case")
     scenes = list(dict.fromkeys(case.scene for case in cases))
     source = provenance(
-        scene=", ".join(s.name for s in scenes), seed=0, command=command,
+        scene=", ".join(s.name for s in scenes),
+        seed=0,
+        command=command,
         scene_digest=", ".join(make_kernels(s).digest for s in scenes),
-    )  # fmt: skip
+    )
     unit = {"units": ball_unit(cases[0].scene), "long_name": "radius of the two closed balls about q and about u-"}
     title = "Distances between A and A_eps on both sides of a critical value"
     return dataset.assign_coords(eps=xr.Variable(("eps",), np.array(radii), unit)).assign_attrs(
@@ -76,9 +78,12 @@ def sweep_near_critical(
 
 
 def _case(
-    case: NearCase, radii: Sequence[float], methods: Mapping[str, object], isolated: Mapping[str, object],
+    case: NearCase,
+    radii: Sequence[float],
+    methods: Mapping[str, object],
+    isolated: Mapping[str, object],
     progress: Callable[[str], None] | None,
-) -> xr.Dataset:  # fmt: skip
+) -> xr.Dataset:
     gaps, exact = zip(*case.values(), strict=True)
     classified = [
         classify(make_state(case.scene, keys=case.keys, parameters={case.parameter: value})) for value in exact
@@ -97,17 +102,24 @@ def _case(
 
     codes = np.array([code(c.branch.value, BRANCHES) for c in classified])
     jumps = np.array([np.linalg.norm(c.limit.jump) for c in classified])
-    return xr.Dataset({
-        "excess_Aeps_A_lower": number(("value", "eps"), forward, "largest lower bound on e(A_eps, A)", unit),
-        "excess_A_Aeps_lower": number(("value", "eps"), lower, "largest lower bound on e(A, A_eps); NaN: none", unit),
-        "excess_A_Aeps_upper": number(("value", "eps"), upper, "least upper bound on e(A, A_eps)", unit),
-        "gap": number(("value",), np.array(gaps), "relative distance of the parameter to its critical value", "1"),
-        "half_jump": number(("value",), jumps / 2.0, "half the distance between u- and u_tilde", unit),
-        "theorem_branch": coded(["value"], codes, BRANCHES, "branch of Theorem 1, by exact arithmetic"),
-        "exact": text(["value"], list(exact), "exact value of the parameter as an expression"),
-        "parameter": text([], np.array(f"{case.scene.name}: {case.parameter} near {case.critical}", dtype=object),
-                          "scene and parameter of the case"),
-    })  # fmt: skip
+    return xr.Dataset(
+        {
+            "excess_Aeps_A_lower": number(("value", "eps"), forward, "largest lower bound on e(A_eps, A)", unit),
+            "excess_A_Aeps_lower": number(
+                ("value", "eps"), lower, "largest lower bound on e(A, A_eps); NaN: none", unit
+            ),
+            "excess_A_Aeps_upper": number(("value", "eps"), upper, "least upper bound on e(A, A_eps)", unit),
+            "gap": number(("value",), np.array(gaps), "relative distance of the parameter to its critical value", "1"),
+            "half_jump": number(("value",), jumps / 2.0, "half the distance between u- and u_tilde", unit),
+            "theorem_branch": coded(["value"], codes, BRANCHES, "branch of Theorem 1, by exact arithmetic"),
+            "exact": text(["value"], list(exact), "exact value of the parameter as an expression"),
+            "parameter": text(
+                [],
+                np.array(f"{case.scene.name}: {case.parameter} near {case.critical}", dtype=object),
+                "scene and parameter of the case",
+            ),
+        }
+    )
 
 
 def _tightest(limit: LimitSet, eps: float, methods: Mapping[str, object]) -> tuple[float, float, float]:

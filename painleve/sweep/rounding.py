@@ -30,7 +30,6 @@ ARITHMETICS: tuple[Arithmetic, ...] = ("plain", "taylor")
 FRACTIONS = (0.1, 0.3, 0.5, 0.7, 0.9)  # of the way from u- to u_tilde
 
 
-
 def sweep_rounding(
     state: State,
     *,
@@ -64,8 +63,7 @@ def sweep_rounding(
         parts.append(_at_eps(problem, radius, members, samples, seed))
     dataset = xr.concat(parts, "eps")
     unit = {"units": ball_unit(state.scene), "long_name": "radius of the two closed balls about q and about u-"}
-    source = provenance(scene=state.scene, scene_digest=make_kernels(state.scene).digest, seed=seed,
-                        command=command)  # fmt: skip
+    source = provenance(scene=state.scene, scene_digest=make_kernels(state.scene).digest, seed=seed, command=command)
     title = f"Plain and cancellation-free arithmetic at {state.scene.name} {state.label}"
     return dataset.assign_coords(eps=xr.Variable(("eps",), np.array(radii), unit)).assign_attrs(
         {"title": title, "kind": "rounding", **source}
@@ -89,11 +87,17 @@ def _at_eps(problem: LocalProblem, eps: float, members: int, samples: int, seed:
         "plain_error_median": number(("quantity",), median, "median relative error of plain doubles"),
         "plain_error_largest": number(("quantity",), largest, "largest relative error of plain doubles"),
         "wrong_sign": number((), wrong_sign, "share of states at which plain doubles give gamma a wrong sign"),
-        "witness_error": number((), _witness_error(problem, eps), "error of plain doubles in S, in lengths of A, at "
-                                "witnesses spread along A: the largest"),
+        "witness_error": number(
+            (),
+            _witness_error(problem, eps),
+            "error of plain doubles in S, in lengths of A, at witnesses spread along A: the largest",
+        ),
         "plain_error_farthest": number((), plain_far, "relative error of plain doubles at the farthest member"),
-        "kept_error_farthest": number((), kept_far, "distance that cancellation-free arithmetic finds against that of "
-                                      "the true member beside it, relative"),
+        "kept_error_farthest": number(
+            (),
+            kept_far,
+            "distance that cancellation-free arithmetic finds against that of the true member beside it, relative",
+        ),
         "counts": number(("arithmetic", "law_branch"), counts, "samples by branch of the law; -1 where not run"),
     }
     coordinates = {

@@ -39,9 +39,12 @@ class SchemeRun:
 
 
 def sweep_schemes(
-    states: Sequence[tuple[str, State, float]], runs: Sequence[SchemeRun], *,
-    progress: Callable[[int], None] | None = None, command: str | None = None,
-) -> xr.Dataset:  # fmt: skip
+    states: Sequence[tuple[str, State, float]],
+    runs: Sequence[SchemeRun],
+    *,
+    progress: Callable[[int], None] | None = None,
+    command: str | None = None,
+) -> xr.Dataset:
     """What happens first, and when: the tip stops (jump), lifts off, slides to the end, or the method cannot go on.
 
     `states`: label, state, and how long to follow it (s). (state, run).

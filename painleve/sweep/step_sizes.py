@@ -74,9 +74,14 @@ def find_approach(state: State, *, until: float) -> Approach:
 
 
 def sweep_step_sizes(
-    state: State, windows: Sequence[StepWindow], *, until: float, seed: int = 0,
-    progress: Callable[[int], None] | None = None, command: str | None = None,
-) -> xr.Dataset:  # fmt: skip
+    state: State,
+    windows: Sequence[StepWindow],
+    *,
+    until: float,
+    seed: int = 0,
+    progress: Callable[[int], None] | None = None,
+    command: str | None = None,
+) -> xr.Dataset:
     """Fractions that jump, jump times and some members, for both contact tests; (contact, window) and (..., member).
 
     `local_map` is what painleve.core.jam_map predicts from the amplitude of the exact slip, averaged over the window.
@@ -94,9 +99,15 @@ def sweep_step_sizes(
         for j, window in enumerate(windows):
             asked = window.count if contact == "strict" else -(-window.count // 4)
             e = run_ensemble(
-                state, step=window.step, spread=window.decades, count=asked, until=until, seed=seed + j,
-                contact_tolerance=0.0 if contact == "strict" else KEPT_TOLERANCE, keep=True,
-            )  # fmt: skip
+                state,
+                step=window.step,
+                spread=window.decades,
+                count=asked,
+                until=until,
+                seed=seed + j,
+                contact_tolerance=0.0 if contact == "strict" else KEPT_TOLERANCE,
+                keep=True,
+            )
             count[i, j] = e.count
             number["fraction"][i, j] = e.fraction(Outcome.JUMP)
             number["lower"][i, j], number["upper"][i, j] = e.interval(Outcome.JUMP)
@@ -119,15 +130,21 @@ def _predicted(approach: Approach, window: StepWindow, *, strict: bool) -> float
     point = approach.point
     drift = point.strict_drift if strict else point.kept_drift
     steps = window.step * 10.0 ** (window.decades * (np.arange(9) + 0.5) / 9)
-    return float(np.mean([
-        jam_fraction(point.ratio, drift(h, approach.amplitude), strict=strict, phases=2000) for h in steps
-    ]))  # fmt: skip
+    return float(
+        np.mean([jam_fraction(point.ratio, drift(h, approach.amplitude), strict=strict, phases=2000) for h in steps])
+    )
 
 
 def _dataset(
-    state: State, windows: Sequence[StepWindow], approach: Approach, number: dict[str, np.ndarray], count: np.ndarray,
-    members: tuple[np.ndarray, np.ndarray, np.ndarray], seed: int, command: str | None,
-) -> xr.Dataset:  # fmt: skip
+    state: State,
+    windows: Sequence[StepWindow],
+    approach: Approach,
+    number: dict[str, np.ndarray],
+    count: np.ndarray,
+    members: tuple[np.ndarray, np.ndarray, np.ndarray],
+    seed: int,
+    command: str | None,
+) -> xr.Dataset:
     sentences = {
         "fraction": ("measured fraction of the step sizes that jump", "1"),
         "lower": ("lower end of Wilson's 95 % interval", "1"),

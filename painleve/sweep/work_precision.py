@@ -116,11 +116,13 @@ def sweep_work_precision(
         "reference": _number(("state",), middle, "middle of the narrowest enclosure of d_H", unit),
         "reference_half_width": _number(("state",), half, "half the width of that enclosure, proved", unit),
         "theorem_branch": coded(
-            ["state"], np.array([code(c.branch.value, BRANCHES) for c in branches]), BRANCHES,
+            ["state"],
+            np.array([code(c.branch.value, BRANCHES) for c in branches]),
+            BRANCHES,
             "branch of Theorem 1, by exact arithmetic",
         ),
         "eps": _number((), np.array(eps), "radius of the two balls", _joined(ball_unit(s.scene) for s in states)),
-    }  # fmt: skip
+    }
     coordinates = {
         "state": text(["state"], [f"{s.scene.name} {s.label}" for s in states], "scene and label of the exact state"),
         "series": text(["run"], [t.series for t in trials], "method, with its sampler"),
@@ -128,9 +130,11 @@ def sweep_work_precision(
     }
     scenes = list(dict.fromkeys(s.scene for s in states))
     source = provenance(
-        scene=", ".join(s.name for s in scenes), seed=seed, command=command,
+        scene=", ".join(s.name for s in scenes),
+        seed=seed,
+        command=command,
         scene_digest=", ".join(make_kernels(s).digest for s in scenes),
-    )  # fmt: skip
+    )
     title = f"Error in d_H(A, A_eps) against work at eps = {eps:g}"
     return xr.Dataset(variables, coordinates, {"title": title, "kind": "work_precision", **source})
 
@@ -176,16 +180,25 @@ def _naive(samples: int, seed: int) -> Measured:
 
 
 def _record(
-    limit: LimitSet, eps: float, trial: _Trial, reference: Bounds, effort: Effort,
+    limit: LimitSet,
+    eps: float,
+    trial: _Trial,
+    reference: Bounds,
+    effort: Effort,
     progress: Callable[[str], None] | None,
-) -> Record:  # fmt: skip
+) -> Record:
     name = f"{limit.state.scene.name} {limit.state.label}"
     _report(progress, f"{name}: {trial.series}, {trial.setting:g}")
     middle = float(_middles([reference])[0][0])
     return measure(
-        name, trial.series, trial.setting, lambda: trial.run(limit, eps), reference=middle,
-        repetitions=effort.repetitions, patience=effort.patience,
-    )  # fmt: skip
+        name,
+        trial.series,
+        trial.setting,
+        lambda: trial.run(limit, eps),
+        reference=middle,
+        repetitions=effort.repetitions,
+        patience=effort.patience,
+    )
 
 
 def _middles(references: Sequence[Bounds]) -> tuple[np.ndarray, np.ndarray]:

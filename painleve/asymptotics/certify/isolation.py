@@ -119,8 +119,9 @@ class _Forms:
         point = dict(zip(scene.q, q, strict=True)) | dict(zip([x.symbol for x in scene.parameters], p, strict=True))
         with flint.ctx.workprec(BITS):
             ball = point | {x: point[x] + flint.arb(0, eps) for x in variables}
-        self.P, self.g = self._orders(jets(expressions, variables, point, 2, bits=BITS),
-                                      jets(expressions, variables, ball, 3, bits=BITS))  # fmt: skip
+        self.P, self.g = self._orders(
+            jets(expressions, variables, point, 2, bits=BITS), jets(expressions, variables, ball, 3, bits=BITS)
+        )
         self.kappa = flint.arb(0) if problem.carried > 0.0 else self._kappa()
 
     def _orders(self, near: list[Jet], wide: list[Jet]) -> list[list[dict[tuple[int, ...], flint.arb]]]:

@@ -77,8 +77,10 @@ def certify_distance(limit: LimitSet, eps: float, options: CertifyOptions | None
     if limit.kind == "undecided":
         raise InputError(f"state {limit.state.label}: no distance to a limit set that is undecided: {limit.reason}")
     if limit.state.scene.friction_dimension == 2:
-        raise InputError(f"certify: scene {limit.state.scene.name} has friction in space, which this method does not "
-                         "search; use the methods sample or optimise")  # fmt: skip
+        raise InputError(
+            f"certify: scene {limit.state.scene.name} has friction in space, which this method does not "
+            "search; use the methods sample or optimise"
+        )
     problem = make_local_problem(limit)
     near = neighbours(limit.state, limit.edge) if limit.critical else None
     apart = near is not None and near.kind is Neighbourhood.ISOLATED and slips_nowhere(problem, eps)
@@ -87,11 +89,16 @@ def certify_distance(limit: LimitSet, eps: float, options: CertifyOptions | None
     counts = {b.label: sum(s.evaluations for s in found.searches if s.piece.branch is b) for b in Branch}
     bounds = Bounds.between(found.lower, found.upper)
     return Distance(
-        limit=limit, eps=eps, method="certify", counts={name: n for name, n in counts.items() if n},
-        excess_Aeps_A=Attained(bounds=bounds, member=found.member), excess_A_Aeps=backward,
-        evaluations=found.evaluations, ending=f"{_ending(bounds, found.evaluations, options)}; {note}",
+        limit=limit,
+        eps=eps,
+        method="certify",
+        counts={name: n for name, n in counts.items() if n},
+        excess_Aeps_A=Attained(bounds=bounds, member=found.member),
+        excess_A_Aeps=backward,
+        evaluations=found.evaluations,
+        ending=f"{_ending(bounds, found.evaluations, options)}; {note}",
         settings={"width": options.width, "budget": options.budget},
-    )  # fmt: skip
+    )
 
 
 def _critical(limit: LimitSet) -> Branch:

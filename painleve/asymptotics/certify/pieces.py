@@ -205,19 +205,37 @@ class _Build:
         return rest if directions == "across" else np.vstack([first, rest])
 
     def piece(
-        self, branch: Branch, label: str, map_: Map, constraints: Sequence[Constraint], directions: Directions, *,
-        p: TaylorModel | None = None, lam: tuple[float, float] | None = None, equality: bool = False,
-        shift: float = 0.0, unit: float = 1.0,
-    ) -> Piece:  # fmt: skip
+        self,
+        branch: Branch,
+        label: str,
+        map_: Map,
+        constraints: Sequence[Constraint],
+        directions: Directions,
+        *,
+        p: TaylorModel | None = None,
+        lam: tuple[float, float] | None = None,
+        equality: bool = False,
+        shift: float = 0.0,
+        unit: float = 1.0,
+    ) -> Piece:
         functions = [*map_.c, *(f for row in map_.Q for f in row), *map_.y]
         for constraint in constraints:
             functions += [constraint.e, *constraint.m, constraint.l]
         models = make_models([*functions, self.g, p if p is not None else self.one])
         return Piece(
-            branch=branch, label=label, models=models, constraints=len(constraints), equality=equality, lam=lam,
-            frame=self.frame(directions), directions=directions, carried=self.problem.carried,
-            slipping=p is not None, shift=shift, unit=unit,
-        )  # fmt: skip
+            branch=branch,
+            label=label,
+            models=models,
+            constraints=len(constraints),
+            equality=equality,
+            lam=lam,
+            frame=self.frame(directions),
+            directions=directions,
+            carried=self.problem.carried,
+            slipping=p is not None,
+            shift=shift,
+            unit=unit,
+        )
 
 
 def contact_pieces(problem: LocalProblem, eps: float) -> Iterator[Piece]:
@@ -278,9 +296,7 @@ def _slipping(build: _Build, sense: int, branch: Branch) -> Iterator[Piece]:
         yield from _slipping_near_zero(build, cover, sense, branch, p)
 
 
-def _slipping_near_zero(
-    build: _Build, cover: Cover, sense: int, branch: Branch, p: TaylorModel
-) -> Iterator[Piece]:
+def _slipping_near_zero(build: _Build, cover: Cover, sense: int, branch: Branch, p: TaylorModel) -> Iterator[Piece]:
     """Slip where p may vanish: Lambda runs from 0 to where the tip comes to rest."""
     eps, problem = build.eps, build.problem
     ray = build.ray(sense)
@@ -293,17 +309,28 @@ def _slipping_near_zero(
     from_start = [normal, Constraint(build.scaled(slip), tangents, stop)]
     name = branch.label
     if problem.limit.kind == "point" or sense != problem.limit.edge:
-        yield build.piece(branch, f"{name}, from u-", near, from_start, "sphere", p=p, lam=(0.0, most / eps),
-                          equality=True, unit=eps)  # fmt: skip
+        yield build.piece(
+            branch, f"{name}, from u-", near, from_start, "sphere", p=p, lam=(0.0, most / eps), equality=True, unit=eps
+        )
         return
     from_end, end = _towards_the_end(build, sense, p, ray, slip, stop)
     total = problem.multiplier
     if problem.limit.kind == "pair":
-        yield build.piece(branch, f"{name}, from u-", near, from_start, "sphere", p=p, lam=(0.0, total / (2.0 * eps)),
-                          equality=True, unit=eps)  # fmt: skip
+        yield build.piece(
+            branch,
+            f"{name}, from u-",
+            near,
+            from_start,
+            "sphere",
+            p=p,
+            lam=(0.0, total / (2.0 * eps)),
+            equality=True,
+            unit=eps,
+        )
         lam = (-total / (2.0 * eps), (most - total) / eps)
-        yield build.piece(branch, f"{name}, from u_tilde", end, from_end, "sphere", p=p, lam=lam, equality=True,
-                          shift=total, unit=eps)  # fmt: skip
+        yield build.piece(
+            branch, f"{name}, from u_tilde", end, from_end, "sphere", p=p, lam=lam, equality=True, shift=total, unit=eps
+        )
         return
     drift = [build.scaled(y.shift(-y.near.constant()).vanishing()) for y in ray]
     beside = [
@@ -314,13 +341,23 @@ def _slipping_near_zero(
     yield build.piece(branch, f"{name}, beside A", across, beside, "across", p=p, lam=(0.0, most), equality=True)
     # A member is beyond an end of A only if its impulse is within O(eps) of that end's.
     forward = _positive(build, cover, _along(build, ray))
-    turned = build.piece(branch, f"{name}, beyond u-", near, from_start, "beyond", p=p, lam=(0.0, 1.001 / forward),
-                         equality=True, unit=eps)  # fmt: skip
+    turned = build.piece(
+        branch,
+        f"{name}, beyond u-",
+        near,
+        from_start,
+        "beyond",
+        p=p,
+        lam=(0.0, 1.001 / forward),
+        equality=True,
+        unit=eps,
+    )
     yield replace(turned, frame=turned.frame * np.array([-1.0] + [1.0] * (build.d - 1))[:, None])
     reach = max(abs(x) for x in _along(build, end.c).bounds)
     lam = (-1.001 * (1.0 + reach) / forward, (most - total) / eps)
-    yield build.piece(branch, f"{name}, beyond u_tilde", end, from_end, "beyond", p=p, lam=lam, equality=True,
-                      shift=total, unit=eps)  # fmt: skip
+    yield build.piece(
+        branch, f"{name}, beyond u_tilde", end, from_end, "beyond", p=p, lam=lam, equality=True, shift=total, unit=eps
+    )
 
 
 def _towards_the_end(
@@ -369,5 +406,6 @@ def _positive(build: _Build, cover: Cover, f: TaylorModel) -> float:
 
 
 def _too_large(build: _Build) -> InputError:
-    return InputError(f"certify: eps = {build.eps:g} is too large at this state: the law changes its kind in the ball; "
-                      "use sample")  # fmt: skip
+    return InputError(
+        f"certify: eps = {build.eps:g} is too large at this state: the law changes its kind in the ball; use sample"
+    )

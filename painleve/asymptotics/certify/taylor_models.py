@@ -75,8 +75,10 @@ class TaylorModel:
         product = self * trial
         delta = product.shift(flint.arb(-1)).size + product.remainder
         if not delta < 1:
-            raise InputError(f"certify: eps = {float(self.radius.mid()):g} is too large at this state: no expansion "
-                             "converges on the ball; use sample")  # fmt: skip
+            raise InputError(
+                f"certify: eps = {float(self.radius.mid()):g} is too large at this state: no expansion "
+                "converges on the ball; use sample"
+            )
         return replace(trial, remainder=(trial.size * delta / (1 - delta)).abs_upper())
 
     def _inverse_jet(self) -> Jet:
@@ -115,8 +117,10 @@ class TaylorModel:
 def taylor_order(variables: int, eps: float) -> int:
     """The degree of polynomials whose remainder does not show, or the highest one that is affordable."""
     if variables not in HIGHEST_ORDER:
-        raise InputError(f"certify: the law depends on {variables} coordinates of this scene, and at most "
-                         f"{max(HIGHEST_ORDER)} can be enclosed; use sample")  # fmt: skip
+        raise InputError(
+            f"certify: the law depends on {variables} coordinates of this scene, and at most "
+            f"{max(HIGHEST_ORDER)} can be enclosed; use sample"
+        )
     wanted = 1 + math.ceil(math.log(NEGLIGIBLE) / math.log(min(eps, 0.1)))
     return max(1, min(wanted, HIGHEST_ORDER[variables]))
 
@@ -188,6 +192,9 @@ def make_models(functions: Sequence[TaylorModel]) -> Models:
         remainder[j] = np.nextafter(float((lost + f.remainder).abs_upper()), np.inf)
     degree, size = np.array([sum(m) for m in powers]), np.abs(table)
     return Models(
-        powers=np.array(powers, dtype=int).reshape(len(powers), first.near.variables), coefficients=table,
-        remainder=remainder, bend=(degree * (degree - 1)) @ size, size=size.sum(axis=0),
-    )  # fmt: skip
+        powers=np.array(powers, dtype=int).reshape(len(powers), first.near.variables),
+        coefficients=table,
+        remainder=remainder,
+        bend=(degree * (degree - 1)) @ size,
+        size=size.sum(axis=0),
+    )

@@ -78,8 +78,11 @@ def _searches(problem: ContactProblem, approach: Sign) -> list[Callable[[], Iter
         return [partial(_frictionless, problem)] if approach is Sign.NEGATIVE else []
     corners = range(len(problem.vertices))
     edges = corners if problem.delassus.rows == 3 else range(0)
-    return [partial(_stick_in_polygon, problem), *(partial(_at_vertex, problem, i) for i in corners),
-            *(partial(_on_edge, problem, i) for i in edges)]  # fmt: skip
+    return [
+        partial(_stick_in_polygon, problem),
+        *(partial(_at_vertex, problem, i) for i in corners),
+        *(partial(_on_edge, problem, i) for i in edges),
+    ]
 
 
 def _sign(number: sp.Expr, what: str) -> Sign:
@@ -260,14 +263,18 @@ def _on_edge(problem: ContactProblem, i: int) -> list[Impulse]:
         if any(_sign(number, "a slip across an edge") is not Sign.POSITIVE for number in wanted):
             return []
         return [Impulse(kind="slip", values=_between(ends, x, y))]
-    if any(_sign(lift * m - n * drift, "whether an edge has slips") is not Sign.ZERO
-           for m, n in zip(along, levers, strict=True)):  # fmt: skip
+    if any(
+        _sign(lift * m - n * drift, "whether an edge has slips") is not Sign.ZERO
+        for m, n in zip(along, levers, strict=True)
+    ):
         return []
     # along[1] - along[0] = e.C e > 0: one equation is left, a line of pairs (x, y)
     base = drift / (along[1] - along[0])
     lines = [(-base, along[1]), (base, -along[0])]
-    opposing = (push - across[0] * lines[0][0] - across[1] * lines[1][0],
-                -across[0] * lines[0][1] - across[1] * lines[1][1])  # fmt: skip
+    opposing = (
+        push - across[0] * lines[0][0] - across[1] * lines[1][0],
+        -across[0] * lines[0][1] - across[1] * lines[1][1],
+    )
     span = _interval([*lines, opposing])
     if span is None or _sign(span[1] - span[0], "the length of a family") is Sign.ZERO:
         return []

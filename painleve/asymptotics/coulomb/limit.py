@@ -95,16 +95,23 @@ def coulomb_limit_set(state: State) -> CoulombLimitSet:
     jumps = tuple(_jump(problem, impulse) for impulse in found)
     family = any(jump.end is not None for jump in jumps)
     return CoulombLimitSet(
-        state=state, kind="undecided" if doubts else "family" if family else "finite", gamma=problem.gamma,
-        jumps=jumps, reason="; ".join(doubts) or _reason(problem, jumps),
-    )  # fmt: skip
+        state=state,
+        kind="undecided" if doubts else "family" if family else "finite",
+        gamma=problem.gamma,
+        jumps=jumps,
+        reason="; ".join(doubts) or _reason(problem, jumps),
+    )
 
 
 def _jump(problem: ContactProblem, found: Impulse) -> CoulombJump:
     return CoulombJump(
-        kind=found.kind, impulse=found.values, velocity=_after(problem, found.values), multiplicity=found.multiplicity,
-        end_impulse=found.end, end=None if found.end is None else _after(problem, found.end),
-    )  # fmt: skip
+        kind=found.kind,
+        impulse=found.values,
+        velocity=_after(problem, found.values),
+        multiplicity=found.multiplicity,
+        end_impulse=found.end,
+        end=None if found.end is None else _after(problem, found.end),
+    )
 
 
 def _after(problem: ContactProblem, impulse: tuple[sp.Expr, ...]) -> tuple[sp.Expr, ...]:

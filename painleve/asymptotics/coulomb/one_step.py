@@ -89,9 +89,11 @@ def enumerate_solutions(problem: ContactProblem) -> CoulombSolutions:
     """The same of a problem whose numbers were read before."""
     impulses, doubts = find_impulses(problem)
     return CoulombSolutions(
-        solutions=tuple(_rounded(problem, impulse) for impulse in impulses), gamma=problem.gamma,
-        enumeration=Enumeration.UNDECIDED if doubts else Enumeration.COMPLETE, doubts=tuple(doubts),
-    )  # fmt: skip
+        solutions=tuple(_rounded(problem, impulse) for impulse in impulses),
+        gamma=problem.gamma,
+        enumeration=Enumeration.UNDECIDED if doubts else Enumeration.COMPLETE,
+        doubts=tuple(doubts),
+    )
 
 
 def _named(solution: CoulombSolution) -> str:
@@ -112,11 +114,16 @@ def _rounded(problem: ContactProblem, found: Impulse) -> CoulombSolution:
         if found.kind == "stick":
             contact = [sp.Integer(0)] * len(contact)
         return CoulombSolution(
-            kind=found.kind, impulse=impulse, contact_velocity=_floats(contact), slip=_unit(contact[1:]),
-            velocity=velocities[0], multiplicity=found.multiplicity, residual=_residual(problem, impulse),
+            kind=found.kind,
+            impulse=impulse,
+            contact_velocity=_floats(contact),
+            slip=_unit(contact[1:]),
+            velocity=velocities[0],
+            multiplicity=found.multiplicity,
+            residual=_residual(problem, impulse),
             family=None if found.end is None else np.array([_floats(r) for r in ends]),
             family_velocities=None if found.end is None else np.array(velocities[1:]),
-        )  # fmt: skip
+        )
 
 
 def _moved(start: sp.MatrixBase, response: sp.MatrixBase, impulse: tuple[Exact, ...]) -> list[Exact]:

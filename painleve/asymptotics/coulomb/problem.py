@@ -89,14 +89,17 @@ def _read(scene: Scene, what: str, given: Numbers, names: list[str]) -> list[sp.
     if isinstance(given, Mapping):
         wrong = sorted(set(map(str, given)) ^ set(names))
         if wrong:
-            raise InputError(f"scene {scene.name}: {what} needs exactly {', '.join(names)}; "
-                             f"missing or unknown: {', '.join(wrong)}")  # fmt: skip
+            raise InputError(
+                f"scene {scene.name}: {what} needs exactly {', '.join(names)}; missing or unknown: {', '.join(wrong)}"
+            )
         values = [given[name] for name in names]
     else:
         values = list(given)
         if isinstance(given, str) or len(values) != len(names):
-            raise InputError(f"scene {scene.name}: {what} needs {len(names)} numbers ({', '.join(names)}), "
-                             f"not {1 if isinstance(given, str) else len(values)}")  # fmt: skip
+            raise InputError(
+                f"scene {scene.name}: {what} needs {len(names)} numbers ({', '.join(names)}), "
+                f"not {1 if isinstance(given, str) else len(values)}"
+            )
     return [exact_number(value, where=f"{what}: {name}") for value, name in zip(values, names, strict=True)]
 
 
@@ -113,14 +116,22 @@ def _evaluate(scene: Scene, point: Mapping[sp.Symbol, sp.Expr], v: sp.ImmutableM
     Y = exact(sp.Matrix.hstack(d.normal_response, d.tangent_response))
     G = (W.T * Y).applyfunc(recognised)
     if any(not _positive(G[:n, :n]) for n in range(1, G.rows + 1)):
-        raise InputError(f"scene {scene.name}: the normal and the tangents are not independent at this q (H3); "
-                         "choose another configuration")  # fmt: skip
+        raise InputError(
+            f"scene {scene.name}: the normal and the tangents are not independent at this q (H3); "
+            "choose another configuration"
+        )
     vertices, shape = _section(scene, exact)
     return ContactProblem(
-        scene=scene, velocity=v, constraint=exact_sign(scene.constraint.xreplace(dict(point))),
-        gamma=exact_sign(d.gamma.xreplace(dict(point))), delassus=G, contact_velocity=(W.T * v).applyfunc(recognised),
-        responses=Y, vertices=vertices, shape=shape,
-    )  # fmt: skip
+        scene=scene,
+        velocity=v,
+        constraint=exact_sign(scene.constraint.xreplace(dict(point))),
+        gamma=exact_sign(d.gamma.xreplace(dict(point))),
+        delassus=G,
+        contact_velocity=(W.T * v).applyfunc(recognised),
+        responses=Y,
+        vertices=vertices,
+        shape=shape,
+    )
 
 
 def _positive(minor: sp.MatrixBase) -> bool:
@@ -137,8 +148,10 @@ def _section(
     for condition in friction.conditions:
         value = exact(sp.Matrix([condition.expression]))[0]
         if exact_sign(value).sign not in (Sign.POSITIVE, Sign.ZERO):
-            raise InputError(f"scene {scene.name}: {condition.sentence} is {float(ball(value).mid()):.6g} at this q; "
-                             "it must be zero or positive")  # fmt: skip
+            raise InputError(
+                f"scene {scene.name}: {condition.sentence} is {float(ball(value).mid()):.6g} at this q; "
+                "it must be zero or positive"
+            )
     if isinstance(friction, Segment):
         ends = exact(sp.Matrix([-friction.minus, friction.plus]))
         return () if ends.is_zero_matrix else tuple(sp.ImmutableMatrix([end]) for end in ends), None
@@ -150,6 +163,8 @@ def _section(
     if shape.is_zero_matrix:
         return (), None
     if exact_sign(shape.det()).sign is not Sign.POSITIVE:
-        raise InputError(f"scene {scene.name}: the ellipse of friction has a semi-axis of length zero at this q; "
-                         "give friction along a line as a segment")  # fmt: skip
+        raise InputError(
+            f"scene {scene.name}: the ellipse of friction has a semi-axis of length zero at this q; "
+            "give friction along a line as a segment"
+        )
     return (), shape

@@ -63,8 +63,10 @@ def find_slips(G: sp.MatrixBase, v: sp.MatrixBase, stick: Sequence[sp.Expr] | No
             slips = None if roots is None else _slips(equation, [(t, 1) for t in roots], -data[6], along)
             if slips is not None:
                 return slips
-    raise Undecided(f"the slips: the data are not rational, and {PRECISIONS[-1]} bits do not separate two of them, "
-                    "or one of them from sticking")  # fmt: skip
+    raise Undecided(
+        f"the slips: the data are not rational, and {PRECISIONS[-1]} bits do not separate two of them, "
+        "or one of them from sticking"
+    )
 
 
 def _of_rational(data: list[fmpq]) -> list[Slip]:
@@ -77,8 +79,9 @@ def _of_rational(data: list[fmpq]) -> list[Slip]:
     parts = [(part // part.gcd(equation.lever * equation.push), n) for part, n in parts]
     for bits in PRECISIONS:
         with ctx.workprec(bits):
-            roots = [(z.real, n) for part, n in parts if part.degree() > 0
-                     for z, _ in part.complex_roots() if z.imag == 0]  # fmt: skip
+            roots = [
+                (z.real, n) for part, n in parts if part.degree() > 0 for z, _ in part.complex_roots() if z.imag == 0
+            ]
             enclosed = replace(equation, lever=arb_poly(equation.lever), push=arb_poly(equation.push))
             slips = _slips(enclosed, sorted(roots, key=lambda root: root[0].mid()), arb(-data[6]), None)
         if slips is not None:
@@ -98,9 +101,7 @@ def _equation(ring: Any, data: Sequence[Any], turn: fmpq) -> _Equation:
     circle = ring([1, 0, 1])
     lever = circle * a + d[0] * b[0] + d[1] * b[1]
     w = [lever * V[i] - (circle * b[i] + d[0] * A[i][0] + d[1] * A[i][1]) * v_n for i in (0, 1)]
-    return _Equation(
-        quartic=d[0] * w[1] - d[1] * w[0], lever=lever, push=-(d[0] * w[0] + d[1] * w[1]), turn=turn
-    )  # fmt: skip
+    return _Equation(quartic=d[0] * w[1] - d[1] * w[0], lever=lever, push=-(d[0] * w[0] + d[1] * w[1]), turn=turn)
 
 
 def _isolated(quartic: arb_poly, bits: int) -> list[arb] | None:

@@ -53,9 +53,11 @@ class SpaceBall:
     def conditions(self, x: np.ndarray, dv: np.ndarray, rows: np.ndarray, changes: np.ndarray) -> list[np.ndarray]:
         """What is >= 0 where (x, dv) is in the balls, in contact and approaching."""
         return [
-            1.0 - np.sum(x * x, axis=0), 1.0 - np.sum(dv * dv, axis=0),
-            self.contact(x, changes), self.approach(dv, rows, changes),
-        ]  # fmt: skip
+            1.0 - np.sum(x * x, axis=0),
+            1.0 - np.sum(dv * dv, axis=0),
+            self.contact(x, changes),
+            self.approach(dv, rows, changes),
+        ]
 
     def values(self, x: np.ndarray, dv: np.ndarray, rows: np.ndarray, changes: np.ndarray) -> tuple[np.ndarray, ...]:
         """dist(S, A)/eps and the branch, over configurations in contact, for velocities made to approach."""
@@ -65,9 +67,19 @@ class SpaceBall:
         branch, measures = np.empty(n, np.int64), np.empty((3, n))
         varying = np.ascontiguousarray(changes[list(p.kernels.rows.varying)])
         p.kernels.law_block(
-            varying, np.full(n, np.inf), dv, p.base, p.u, p.direction, p.length, p.impulse, p.multiplier,
-            p.critical_edge, branch, *measures,
-        )  # fmt: skip
+            varying,
+            np.full(n, np.inf),
+            dv,
+            p.base,
+            p.u,
+            p.direction,
+            p.length,
+            p.impulse,
+            p.multiplier,
+            p.critical_edge,
+            branch,
+            *measures,
+        )
         self.evaluations += n
         return self.distance(*measures), branch
 

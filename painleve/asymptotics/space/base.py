@@ -42,12 +42,19 @@ def space_base(limit: LimitSet, bits: int) -> SpaceBase | PolygonBase:
     after = turned + E.T * (couplings * limit.multiplier + compliance * sp.Matrix(limit.tangential))
     size = limit.multiplier if limit.kind != "point" else sp.Integer(1)
     return SpaceBase(
-        stick_n=number(stick_n), stick_1=number(stick[0]), stick_2=number(stick[1]),
-        jump_n=number(limit.multiplier), jump_1=number(jump[0]), jump_2=number(jump[1]),
-        slip_1=number(turned[0]), slip_2=number(turned[1]),
-        slip_across=number(_cross(b, turned)), stick_across=number(_cross(b, stick)),
-        after_across=number(_cross(jump, after) / size), jump_sticks=limit.after == "sticks",
-    )  # fmt: skip
+        stick_n=number(stick_n),
+        stick_1=number(stick[0]),
+        stick_2=number(stick[1]),
+        jump_n=number(limit.multiplier),
+        jump_1=number(jump[0]),
+        jump_2=number(jump[1]),
+        slip_1=number(turned[0]),
+        slip_2=number(turned[1]),
+        slip_across=number(_cross(b, turned)),
+        stick_across=number(_cross(b, stick)),
+        after_across=number(_cross(jump, after) / size),
+        jump_sticks=limit.after == "sticks",
+    )
 
 
 def _slip(state: State) -> sp.MatrixBase:
@@ -58,8 +65,10 @@ def _map(state: State, d: Derivation) -> tuple[sp.MatrixBase, sp.MatrixBase]:
     """E of the section E times the unit disc, and its inverse."""
     E = state.exact(d.scene.friction.map)  # type: ignore[union-attr]
     if exact_sign(E[0, 0] * E[1, 1] - E[0, 1] * E[1, 0]).sign is not Sign.POSITIVE:
-        raise InputError(f"state {state.label}: a coefficient of friction vanishes; the friction section must have an "
-                         "area: give positive coefficients")  # fmt: skip
+        raise InputError(
+            f"state {state.label}: a coefficient of friction vanishes; the friction section must have an "
+            "area: give positive coefficients"
+        )
     return E, inverse_of_two(E)
 
 
@@ -71,11 +80,20 @@ def _polygon_base(limit: LimitSet, bits: int) -> PolygonBase:
     after = slip + state.exact(d.couplings) * limit.multiplier + state.exact(d.compliance) * jump
     first, second, x_first, x_second = _edge_of_jump(limit, number)
     return PolygonBase(
-        stick_n=number(stick_n), stick_1=number(stick[0]), stick_2=number(stick[1]),
-        jump_n=number(limit.multiplier), jump_1=number(jump[0]), jump_2=number(jump[1]),
-        after_1=number(after[0]), after_2=number(after[1]), first=first, second=second,
-        x_first=x_first, x_second=x_second, jump_sticks=limit.after == "sticks",
-    )  # fmt: skip
+        stick_n=number(stick_n),
+        stick_1=number(stick[0]),
+        stick_2=number(stick[1]),
+        jump_n=number(limit.multiplier),
+        jump_1=number(jump[0]),
+        jump_2=number(jump[1]),
+        after_1=number(after[0]),
+        after_2=number(after[1]),
+        first=first,
+        second=second,
+        x_first=x_first,
+        x_second=x_second,
+        jump_sticks=limit.after == "sticks",
+    )
 
 
 def _edge_of_jump(limit: LimitSet, number: Callable[[sp.Expr], float]) -> tuple[int, int, float, float]:

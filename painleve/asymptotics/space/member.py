@@ -66,10 +66,11 @@ class Contact:
         x_1, x_2 = C_11 * e_1 + C_12 * e_2, C_12 * e_1 + C_22 * e_2
         y_1, y_2 = C_12 * e_1 - C_11 * e_2, C_22 * e_1 - C_12 * e_2
         return Contact(
-            a=self.a, b=(b_1 * e_1 + b_2 * e_2, b_2 * e_1 - b_1 * e_2),
+            a=self.a,
+            b=(b_1 * e_1 + b_2 * e_2, b_2 * e_1 - b_1 * e_2),
             C=(x_1 * e_1 + x_2 * e_2, x_2 * e_1 - x_1 * e_2, y_2 * e_1 - y_1 * e_2),
             v=(v_n, v_1 * e_1 + v_2 * e_2, v_2 * e_1 - v_1 * e_2),
-        )  # fmt: skip
+        )
 
 
 def conic_impulse(contact: Contact, p: flint.arb) -> Impulse:

@@ -50,13 +50,21 @@ def optimise_in_space(limit: LimitSet, eps: float, *, starts: int, arithmetic: A
         f"e(A, A_eps): {how}"
     )
     return Distance(
-        limit=limit, eps=eps, method="optimise", excess_A_Aeps=backward, ending=ending, counts=dict(ball.counts),
-        excess_Aeps_A=Attained(bounds=Bounds.at_least(member.distance[0]), member=member), evaluations=ball.evaluations,
+        limit=limit,
+        eps=eps,
+        method="optimise",
+        excess_A_Aeps=backward,
+        ending=ending,
+        counts=dict(ball.counts),
+        excess_Aeps_A=Attained(bounds=Bounds.at_least(member.distance[0]), member=member),
+        evaluations=ball.evaluations,
         settings={
-            "estimate": estimate, "estimated_error": error, "starts": starts,
+            "estimate": estimate,
+            "estimated_error": error,
+            "starts": starts,
             "arithmetic": f"taylor, order {expansion.order}" if expansion else "plain",
         },
-    )  # fmt: skip
+    )
 
 
 def _farthest(ball: SpaceBall, found: SpaceFound | None) -> tuple[Member, float, float, str]:

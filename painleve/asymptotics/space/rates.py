@@ -53,11 +53,14 @@ def root_rate(limit: LimitSet, isolated: bool) -> Root:
     """
     problem, where = make_local_problem(limit), f"rate: scene {limit.state.scene.name}"
     if not (limit.critical and isinstance(problem.impulse, SpaceBase)) or problem.impulse.jump_sticks:
-        raise InputError(f"{where}: with friction in space C is known only where gamma = 0 on a disc or an ellipse and "
-                         "the jump ends in slip; sweep the distance over eps for its slope")  # fmt: skip
+        raise InputError(
+            f"{where}: with friction in space C is known only where gamma = 0 on a disc or an ellipse and "
+            "the jump ends in slip; sweep the distance over eps for its slope"
+        )
     if len(problem.shape) > 2:
-        raise InputError(f"{where} has {len(problem.shape)} coordinates on which the law depends; at most 2 are "
-                         "searched")  # fmt: skip
+        raise InputError(
+            f"{where} has {len(problem.shape)} coordinates on which the law depends; at most 2 are searched"
+        )
     search = _Search(problem, isolated)
     squared, x, nu = search.best()
     dq = np.zeros(problem.dimension)

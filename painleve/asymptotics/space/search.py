@@ -89,10 +89,14 @@ def _ascend(chart: Chart, start: np.ndarray) -> tuple[float, np.ndarray]:
 
     with np.errstate(all="ignore"):
         result = minimize(
-            lambda z: (-local(z)[0] / scale, -local(z)[1] / scale), start, jac=True, method="SLSQP",
-            bounds=chart.bounds, options={"maxiter": MOST_STEPS, "ftol": 1e-14},
+            lambda z: (-local(z)[0] / scale, -local(z)[1] / scale),
+            start,
+            jac=True,
+            method="SLSQP",
+            bounds=chart.bounds,
+            options={"maxiter": MOST_STEPS, "ftol": 1e-14},
             constraints={"type": "ineq", "fun": lambda z: local(z)[2], "jac": lambda z: local(z)[3]},
-        )  # fmt: skip
+        )
     ends = [start, chart.repaired(result.x[:, None])[:, 0]] if np.all(np.isfinite(result.x)) else [start]
     return max(((_safe_value(chart, z), z) for z in ends), key=lambda end: end[0])
 

@@ -73,8 +73,9 @@ def _off_the_line(problem: LocalProblem, dq: Balls, reach: float) -> flint.arb:
     Y_n, Y_1, Y_2 = rows[1 + d : 1 + 2 * d], rows[3 + 4 * d : 3 + 5 * d], rows[3 + 5 * d : 3 + 6 * d]
     friction = problem.limit.state.scene.friction
     if isinstance(friction, Polygon):
-        corners = [(rows[names.index(f"s_1_{i}")], rows[names.index(f"s_2_{i}")])
-                   for i in range(1, 1 + len(friction.vertices))]  # fmt: skip
+        corners = [
+            (rows[names.index(f"s_1_{i}")], rows[names.index(f"s_2_{i}")]) for i in range(1, 1 + len(friction.vertices))
+        ]
         rays = [_combine((Y_n, 1), (Y_1, x), (Y_2, y)) for x, y in corners]
         others = [i for i in range(len(rays)) if i != problem.limit.edge - 1]
         ray = rays[problem.limit.edge - 1]

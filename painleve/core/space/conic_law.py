@@ -92,9 +92,7 @@ def aligned(a, p, beta, q_11, q_12, q_22, w_1, w_2, nu, X, Y, W):
     else:
         upper = Y >= 0.0
     side = 1.0 if upper else -1.0
-    c, s, D = half_angle(
-        a, p, A, q_11, side * q_12, q_22, w_1, side * w_2, nu, k_0, side * k_1, k_2, discriminant
-    )  # fmt: skip
+    c, s, D = half_angle(a, p, A, q_11, side * q_12, q_22, w_1, side * w_2, nu, k_0, side * k_1, k_2, discriminant)
     multiple = nu / D
     return multiple * (c * c + s * s), multiple * ((c - s) * (c + s)), side * (multiple * (2.0 * c * s)), SLIP
 

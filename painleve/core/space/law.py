@@ -16,9 +16,17 @@ def conic_law_from_rows(rows, dimension, v, result):
         return FREE
     v_n, v_1, v_2 = _velocity(rows, d, v, 1), _velocity(rows, d, v, 3 + 2 * d), _velocity(rows, d, v, 3 + 3 * d)
     r_n, r_1, r_2, branch = disc_impulse(
-        rows[1 + 2 * d], rows[2 + 2 * d], rows[tail], rows[tail + 1], rows[tail + 2], rows[tail + 3], rows[tail + 4],
-        v_n, v_1, v_2,
-    )  # fmt: skip
+        rows[1 + 2 * d],
+        rows[2 + 2 * d],
+        rows[tail],
+        rows[tail + 1],
+        rows[tail + 2],
+        rows[tail + 3],
+        rows[tail + 4],
+        v_n,
+        v_1,
+        v_2,
+    )
     _add_impulse(rows, d, r_n, r_1, r_2, result)
     return branch
 
@@ -35,9 +43,18 @@ def polygon_law_from_rows(rows, dimension, vertices, v, result):
         compliances[i] = rows[tail + 5 + i]
         corners[i, 0], corners[i, 1] = rows[tail + 5 + vertices + 2 * i], rows[tail + 6 + vertices + 2 * i]
     r_n, r_1, r_2, branch = polygon_impulse(
-        rows[1 + 2 * d], rows[tail], rows[tail + 1], rows[tail + 2], rows[tail + 3], rows[tail + 4],
-        corners, compliances, v_n, v_1, v_2,
-    )  # fmt: skip
+        rows[1 + 2 * d],
+        rows[tail],
+        rows[tail + 1],
+        rows[tail + 2],
+        rows[tail + 3],
+        rows[tail + 4],
+        corners,
+        compliances,
+        v_n,
+        v_1,
+        v_2,
+    )
     _add_impulse(rows, d, r_n, r_1, r_2, result)
     return branch
 

@@ -51,7 +51,7 @@ class SpaceBase(NamedTuple):
 @jit
 def conic_split(
     hit, a, p, b_1, b_2, C_11, C_12, C_22, da, db_1, db_2, dC_11, dC_12, dC_22, v_n, dv_1, dv_2, base, critical
-):  # fmt: skip
+):
     """(branch, tau, e_n, e_1, e_2) at an offset state.
 
     `hit`: in contact with v_n < 0; da ... dC_22: differences from the base state; dv_1, dv_2: that of the tip's
@@ -116,13 +116,11 @@ def _turn(cosine, sine, f_1, f_2, b_1, b_2, db_1, db_2):
     return (
         more * f_1 - sine * f_2 - (less * k_1 - turn_s * k_2),
         more * f_2 + sine * f_1 - (less * k_2 + turn_s * k_1),
-    )  # fmt: skip
+    )
 
 
 @jit
-def _from_ray(
-    b_1, b_2, C_11, C_12, C_22, da, db_1, db_2, dC_11, dC_12, dC_22, nu, dv_1, dv_2, r_n, r_1, r_2, base
-):  # fmt: skip
+def _from_ray(b_1, b_2, C_11, C_12, C_22, da, db_1, db_2, dC_11, dC_12, dC_22, nu, dv_1, dv_2, r_n, r_1, r_2, base):
     """(whether it is near to the jump's impulse, r_n - jump_n, r_1 - jump_1, r_2 - jump_2) of a slip's impulse r."""
     jump = base.jump_n
     s_1, s_2 = base.jump_1 / jump, base.jump_2 / jump

@@ -42,9 +42,31 @@ class PolygonBase(NamedTuple):
 
 @jit
 def polygon_split(
-    hit, a, b_1, b_2, C_11, C_12, C_22, da, db_1, db_2, dC_11, dC_12, dC_22, p, s_1, s_2, dp, ds_1, ds_2,
-    v_n, dv_1, dv_2, base, critical,
-):  # fmt: skip
+    hit,
+    a,
+    b_1,
+    b_2,
+    C_11,
+    C_12,
+    C_22,
+    da,
+    db_1,
+    db_2,
+    dC_11,
+    dC_12,
+    dC_22,
+    p,
+    s_1,
+    s_2,
+    dp,
+    ds_1,
+    ds_2,
+    v_n,
+    dv_1,
+    dv_2,
+    base,
+    critical,
+):
     """(branch, tau, e_n, e_1, e_2) at an offset state.
 
     p, s_1, s_2: of the vertices, with their differences from the base state, as tuples; `critical`: the vertex (from 1)

@@ -36,9 +36,17 @@ def conic_problem(rows, dimension, v_n, v_1, v_2):
     """(r_n, r_1, r_2, branch) of the law with a disc or an ellipse for the section, for a configuration in contact."""
     tail = 3 + 6 * dimension
     return disc_impulse(
-        rows[1 + 2 * dimension], rows[2 + 2 * dimension], rows[tail], rows[tail + 1],
-        rows[tail + 2], rows[tail + 3], rows[tail + 4], v_n, v_1, v_2,
-    )  # fmt: skip
+        rows[1 + 2 * dimension],
+        rows[2 + 2 * dimension],
+        rows[tail],
+        rows[tail + 1],
+        rows[tail + 2],
+        rows[tail + 3],
+        rows[tail + 4],
+        v_n,
+        v_1,
+        v_2,
+    )
 
 
 @jit
@@ -50,9 +58,18 @@ def polygon_problem(rows, dimension, count, v_n, v_1, v_2):
         compliances[i] = rows[tail + 5 + i]
         vertices[i, 0], vertices[i, 1] = rows[tail + 5 + count + 2 * i], rows[tail + 6 + count + 2 * i]
     return polygon_impulse(
-        rows[1 + 2 * dimension], rows[tail], rows[tail + 1], rows[tail + 2], rows[tail + 3], rows[tail + 4],
-        vertices, compliances, v_n, v_1, v_2,
-    )  # fmt: skip
+        rows[1 + 2 * dimension],
+        rows[tail],
+        rows[tail + 1],
+        rows[tail + 2],
+        rows[tail + 3],
+        rows[tail + 4],
+        vertices,
+        compliances,
+        v_n,
+        v_1,
+        v_2,
+    )
 
 
 @jit

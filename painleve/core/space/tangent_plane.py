@@ -29,9 +29,12 @@ def tangent_energy(a, b_1, b_2, C_11, C_12, C_22, nu, v_1, v_2):
     """(Q_11, Q_12, Q_22, w_1, w_2)."""
     slope_1, slope_2 = b_1 / a, b_2 / a
     return (
-        C_11 - b_1 * slope_1, C_12 - b_1 * slope_2, C_22 - b_2 * slope_2,
-        v_1 + nu * slope_1, v_2 + nu * slope_2,
-    )  # fmt: skip
+        C_11 - b_1 * slope_1,
+        C_12 - b_1 * slope_2,
+        C_22 - b_2 * slope_2,
+        v_1 + nu * slope_1,
+        v_2 + nu * slope_2,
+    )
 
 
 @jit

@@ -36,9 +36,7 @@ def compare_laws(G, Y, v_n, slips, frictions, counts, sticks, apart):
             projected[:] = 0.0
             if v_n < 0.0 or (v_n == 0.0 and p < 0.0):
                 size = math.hypot(slips[j, 0], slips[j, 1])
-                r_n, r_1, r_2, _ = disc_impulse(
-                    a, p, b_1, b_2, C_11, C_12, C_22, min(v_n, -TOUCH * size), v_1, v_2
-                )  # fmt: skip
+                r_n, r_1, r_2, _ = disc_impulse(a, p, b_1, b_2, C_11, C_12, C_22, min(v_n, -TOUCH * size), v_1, v_2)
                 projected[0], projected[1], projected[2] = r_n, mu * r_1, mu * r_2
             sticks[i, j], nearest, farthest = 0, np.inf, 0.0
             for row in found[: counts[i, j]]:

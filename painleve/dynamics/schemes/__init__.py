@@ -33,6 +33,8 @@ def scheme_for(scene: Scene, name: str) -> Scheme:
     scheme = load_scheme(name)
     if scene.friction_dimension > scheme.friction_dimension:
         able = [n for n in SCHEME_NAMES if load_scheme(n).friction_dimension >= scene.friction_dimension]
-        raise InputError(f"scheme: {name} does not step friction in space, which scene {scene.name} has; "
-                         f"use one of {', '.join(able)}")  # fmt: skip
+        raise InputError(
+            f"scheme: {name} does not step friction in space, which scene {scene.name} has; "
+            f"use one of {', '.join(able)}"
+        )
     return scheme

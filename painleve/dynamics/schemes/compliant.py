@@ -86,9 +86,14 @@ class _Run:
         sign = 1.0 if self.closed else -1.0
         with np.errstate(all="ignore"):
             solver = Radau(
-                self.rate, self.place.t, self.place.y, float(self.grid.t[-1]), rtol=self.options["rtol"],
-                atol=self.options["atol"], max_step=self.longest,
-            )  # fmt: skip
+                self.rate,
+                self.place.t,
+                self.place.y,
+                float(self.grid.t[-1]),
+                rtol=self.options["rtol"],
+                atol=self.options["atol"],
+                max_step=self.longest,
+            )
             switched = follow(solver, [lambda t, y: sign * self.closure(t, y)], self.accept)
         self.evaluations, self.arcs = self.evaluations + int(solver.nfev), self.arcs + 1
         if solver.status == "failed":

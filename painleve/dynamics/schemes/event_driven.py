@@ -79,9 +79,14 @@ class _Run:
         events, end = self.mode_events(mode), float(self.grid.t[-1])
         with np.errstate(all="ignore"):
             solver = DOP853(
-                lambda t, y: self.rate(t, y, mode), self.t, self.y, end, rtol=self.options["rtol"],
-                atol=self.options["atol"], first_step=self.first_step(mode, end),
-            )  # fmt: skip
+                lambda t, y: self.rate(t, y, mode),
+                self.t,
+                self.y,
+                end,
+                rtol=self.options["rtol"],
+                atol=self.options["atol"],
+                first_step=self.first_step(mode, end),
+            )
             happened = follow(solver, list(events), self.accept)
         self.record_here()
         if solver.status == "failed":
@@ -215,8 +220,8 @@ SCHEME = Integrated(
     name=NAME,
     sentence="smooth motion between located events, complementarity of accelerations and contact forces",
     source="P. Lötstedt, ZAMM 61 (1981) 605-615; F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral "
-           "Contacts, 1996",
+    "Contacts, 1996",
     order=8,
     options={"rtol": 1e-10, "atol": 1e-12},
     integrate=integrate,
-)  # fmt: skip
+)

@@ -51,9 +51,12 @@ def conclude(name: str, asks: str, findings: list[Finding]) -> Hypothesis:
 def join(decisions: Sequence[Decision]) -> Decision:
     """Several proved claims as one: the least bound, the boxes of all."""
     return Decision(
-        status=Status.PROVED, place=None, boxes=sum(d.boxes for d in decisions),
-        points=sum(d.points for d in decisions), bound=min(d.bound for d in decisions),
-    )  # fmt: skip
+        status=Status.PROVED,
+        place=None,
+        boxes=sum(d.boxes for d in decisions),
+        points=sum(d.points for d in decisions),
+        bound=min(d.bound for d in decisions),
+    )
 
 
 def report(decision: Decision, *, holds: str, fails: str) -> Finding:

@@ -55,8 +55,10 @@ def check_strictly_convex(region: Region) -> Hypothesis:
         return conclude("H'4", asks, [Finding(status=Status.PROVED, sentence=sentence)])
     if isinstance(friction, Polygon) and not _is_flat(region, friction):
         return conclude("H'4", asks, [_plane(region, friction, "D_1 is a polygon, with edges in its boundary,")])
-    sentence = (f"D_1 is the linear image of {_name(friction)}: strictly convex relative to its span, "
-                "where it shrinks to {0} too")  # fmt: skip
+    sentence = (
+        f"D_1 is the linear image of {_name(friction)}: strictly convex relative to its span, "
+        "where it shrinks to {0} too"
+    )
     return conclude("H'4", asks, [Finding(status=Status.PROVED, sentence=sentence)])
 
 

@@ -73,19 +73,22 @@ def _open_finding(
         if broken is not None:
             return Finding(status=Status.REFUTED, sentence=f"{what} {broken}", place=decision.place)
     return Finding(
-        status=Status.UNDECIDED, sentence=f"whether {what} is {level.value} where {_shown(s.node)} is not is undecided",
+        status=Status.UNDECIDED,
+        sentence=f"whether {what} is {level.value} where {_shown(s.node)} is not is undecided",
         place=decision.place,
-    )  # fmt: skip
+    )
 
 
 def _plain(expression: sp.Expr) -> sp.Expr:
     """Tangents and the like as quotients, Min and Max by |.|: fewer kinds of singularity."""
     rules: dict[type, Callable[..., sp.Expr]] = {
-        sp.tan: lambda x: sp.sin(x) / sp.cos(x), sp.cot: lambda x: sp.cos(x) / sp.sin(x),
-        sp.sec: lambda x: 1 / sp.cos(x), sp.csc: lambda x: 1 / sp.sin(x),
+        sp.tan: lambda x: sp.sin(x) / sp.cos(x),
+        sp.cot: lambda x: sp.cos(x) / sp.sin(x),
+        sp.sec: lambda x: 1 / sp.cos(x),
+        sp.csc: lambda x: 1 / sp.sin(x),
         sp.Min: lambda *x: reduce(lambda a, b: (a + b - sp.Abs(a - b)) / 2, x),
         sp.Max: lambda *x: reduce(lambda a, b: (a + b + sp.Abs(a - b)) / 2, x),
-    }  # fmt: skip
+    }
     for function, rule in rules.items():
         expression = expression.replace(function, rule)
     return expression

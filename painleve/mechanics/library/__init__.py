@@ -13,9 +13,19 @@ from painleve.mechanics.scene_file import read_scene
 __all__ = ["SCENE_NAMES", "load_scene"]
 
 SCENE_NAMES = (
-    "slender_rod", "worn_tip_rod", "two_link_arm", "spatial_rod", "spatial_rod_ellipse", "general_rod", "planar_body",
-    "ellipse", "rod_on_obstacle", "general_arm", "minimal", "bead",
-)  # fmt: skip
+    "slender_rod",
+    "worn_tip_rod",
+    "two_link_arm",
+    "spatial_rod",
+    "spatial_rod_ellipse",
+    "general_rod",
+    "planar_body",
+    "ellipse",
+    "rod_on_obstacle",
+    "general_arm",
+    "minimal",
+    "bead",
+)
 
 
 def load_scene(name: str | Path) -> Scene:
@@ -28,5 +38,7 @@ def load_scene(name: str | Path) -> Scene:
         return scene
     if isinstance(name, Path) or name.endswith(".toml") or os.sep in name:
         return read_scene(name)
-    raise InputError(f"no scene {name!r}; the library has {', '.join(SCENE_NAMES)}, and a scene of your own is given "
-                     "by its file, such as my_scene.toml; `painleve new-scene` writes one")  # fmt: skip
+    raise InputError(
+        f"no scene {name!r}; the library has {', '.join(SCENE_NAMES)}, and a scene of your own is given "
+        "by its file, such as my_scene.toml; `painleve new-scene` writes one"
+    )

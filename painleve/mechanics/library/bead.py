@@ -16,10 +16,16 @@ COORDINATES = (
 )
 PARAMETERS = (
     Parameter(name="m", unit="kg", sentence="mass", default="1"),
-    Parameter(name="kappa", unit="1/m", sentence="curvature of the wall at its lowest point; a hill where negative",
-              default="1", range="real", latex=r"\kappa"),
+    Parameter(
+        name="kappa",
+        unit="1/m",
+        sentence="curvature of the wall at its lowest point; a hill where negative",
+        default="1",
+        range="real",
+        latex=r"\kappa",
+    ),
     GRAVITY,
-)  # fmt: skip
+)
 
 x, w = (c.symbol for c in COORDINATES)
 u_x, u_w = (c.velocity for c in COORDINATES)
@@ -42,9 +48,14 @@ SCENE = make_scene(
     placement={"x": x, "w": sp.Integer(0)},
     velocity={"x": speed / sp.sqrt(1 + kappa**2 * x**2)},
     states=(
-        NamedState(name="sliding", sentence="without friction nothing is indeterminate", keys={"x": "3/4"},
-                   parameters={}),
-        NamedState(name="hilltop", sentence="over a hill, fast enough to leave it", keys={"x": "0", "speed": "4"},
-                   parameters={"kappa": "-1"}),
+        NamedState(
+            name="sliding", sentence="without friction nothing is indeterminate", keys={"x": "3/4"}, parameters={}
+        ),
+        NamedState(
+            name="hilltop",
+            sentence="over a hill, fast enough to leave it",
+            keys={"x": "0", "speed": "4"},
+            parameters={"kappa": "-1"},
+        ),
     ),
-)  # fmt: skip
+)

@@ -15,18 +15,23 @@ from painleve.mechanics.scene import Coordinate, NamedState, Outline, Parameter,
 COORDINATES = (
     Coordinate(name="x", unit="m", sentence="horizontal position of the centre"),
     Coordinate(name="y", unit="m", sentence="height of the centre above the floor"),
-    Coordinate(name="theta", unit="rad", sentence="angle from the floor to the axis A, counterclockwise",
-               latex=r"\theta"),
-)  # fmt: skip
+    Coordinate(
+        name="theta", unit="rad", sentence="angle from the floor to the axis A, counterclockwise", latex=r"\theta"
+    ),
+)
 PARAMETERS = (
     Parameter(name="m", unit="kg", sentence="mass", default="1"),
     Parameter(name="A", unit="m", sentence="first semi-axis", default="1"),
     Parameter(name="B", unit="m", sentence="second semi-axis", default="1/2"),
-    Parameter(name="I", unit="kg m^2", sentence="moment of inertia about the centre; default: uniform",
-              default="m*(A**2 + B**2)/4"),
+    Parameter(
+        name="I",
+        unit="kg m^2",
+        sentence="moment of inertia about the centre; default: uniform",
+        default="m*(A**2 + B**2)/4",
+    ),
     MU,
     GRAVITY,
-)  # fmt: skip
+)
 
 x, y, theta = (c.symbol for c in COORDINATES)
 u_x, u_y, u_theta = (c.velocity for c in COORDINATES)
@@ -62,16 +67,35 @@ SCENE = make_scene(
     velocity={"x": slip - omega * support, "y": omega * slope, "theta": omega},
     outline=Outline(points=tuple(outline), floor=sp.Integer(0)),
     states=(
-        NamedState(name="sliding", sentence="gamma > 0: ordinary sliding, nothing is indeterminate",
-                   keys={"theta": "pi/4"}, parameters={"mu": "1/2"}),
-        NamedState(name="paradox", sentence="gamma < 0: slide or jump to rolling",
-                   keys={"theta": "pi/4"}, parameters={"mu": "2"}),
-        NamedState(name="critical", sentence="gamma = 0 on an edge of the band of paradoxes",
-                   keys={"theta": "pi/4"}, parameters={"mu": "43/30"}),
-        NamedState(name="isolated", sentence="gamma = 0 at a maximum of mu_c: a heavy core, constant friction",
-                   keys={"theta": "pi/6"}, parameters=HEAVY_CORE | {"mu": "7*sqrt(3)/25"}),
-        NamedState(name="approached", sentence="gamma = 0 at a minimum of mu_c of the same body",
-                   keys={"theta": "atan(sqrt(4 - sqrt(61)/2))"},
-                   parameters=HEAVY_CORE | {"mu": "sqrt(1753 + 61*sqrt(61))/100"}),
+        NamedState(
+            name="sliding",
+            sentence="gamma > 0: ordinary sliding, nothing is indeterminate",
+            keys={"theta": "pi/4"},
+            parameters={"mu": "1/2"},
+        ),
+        NamedState(
+            name="paradox",
+            sentence="gamma < 0: slide or jump to rolling",
+            keys={"theta": "pi/4"},
+            parameters={"mu": "2"},
+        ),
+        NamedState(
+            name="critical",
+            sentence="gamma = 0 on an edge of the band of paradoxes",
+            keys={"theta": "pi/4"},
+            parameters={"mu": "43/30"},
+        ),
+        NamedState(
+            name="isolated",
+            sentence="gamma = 0 at a maximum of mu_c: a heavy core, constant friction",
+            keys={"theta": "pi/6"},
+            parameters=HEAVY_CORE | {"mu": "7*sqrt(3)/25"},
+        ),
+        NamedState(
+            name="approached",
+            sentence="gamma = 0 at a minimum of mu_c of the same body",
+            keys={"theta": "atan(sqrt(4 - sqrt(61)/2))"},
+            parameters=HEAVY_CORE | {"mu": "sqrt(1753 + 61*sqrt(61))/100"},
+        ),
     ),
-)  # fmt: skip
+)

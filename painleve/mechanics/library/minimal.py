@@ -52,16 +52,36 @@ SCENE = make_scene(
     placement={"x": x, "y": sp.Integer(0)},
     velocity={"x": sp.Symbol("slip", real=True)},
     states=(
-        NamedState(name="sliding", sentence="gamma > 0: ordinary sliding, nothing is indeterminate", keys={},
-                   parameters={"mu": "1/2"}),
+        NamedState(
+            name="sliding",
+            sentence="gamma > 0: ordinary sliding, nothing is indeterminate",
+            keys={},
+            parameters={"mu": "1/2"},
+        ),
         NamedState(name="paradox", sentence="gamma < 0: slide or jump to sticking", keys={}, parameters={"mu": "3/2"}),
-        NamedState(name="crossing", sentence="gamma = 0 and grows along the floor: approached", keys={},
-                   parameters={"mu": "1", "beta_x": "1"}),
-        NamedState(name="approached", sentence="gamma = y^2 - x^2: zero gradient, positive only into penetration",
-                   keys={}, parameters={"mu": "1"}),
-        NamedState(name="isolated", sentence="gamma = -x^2 - y^2: negative all around", keys={},
-                   parameters={"mu": "1", "beta_yy": "1"}),
-        NamedState(name="isolated_by_slope", sentence="gamma = y - x^2 + y^2: falls into penetration", keys={},
-                   parameters={"mu": "1", "beta_y": "-1"}),
+        NamedState(
+            name="crossing",
+            sentence="gamma = 0 and grows along the floor: approached",
+            keys={},
+            parameters={"mu": "1", "beta_x": "1"},
+        ),
+        NamedState(
+            name="approached",
+            sentence="gamma = y^2 - x^2: zero gradient, positive only into penetration",
+            keys={},
+            parameters={"mu": "1"},
+        ),
+        NamedState(
+            name="isolated",
+            sentence="gamma = -x^2 - y^2: negative all around",
+            keys={},
+            parameters={"mu": "1", "beta_yy": "1"},
+        ),
+        NamedState(
+            name="isolated_by_slope",
+            sentence="gamma = y - x^2 + y^2: falls into penetration",
+            keys={},
+            parameters={"mu": "1", "beta_y": "-1"},
+        ),
     ),
-)  # fmt: skip
+)

@@ -17,15 +17,32 @@ COORDINATES = (
 )
 PARAMETERS = (
     Parameter(name="m", unit="kg", sentence="mass", default="1"),
-    Parameter(name="xi", unit="m", sentence="contact point in the body's frame, along its first axis", default="-3/5",
-              range="real", latex=r"\xi"),
-    Parameter(name="eta", unit="m", sentence="contact point in the body's frame, along its second axis", default="-4/5",
-              range="real", latex=r"\eta"),
-    Parameter(name="I", unit="kg m^2", sentence="moment of inertia about the centre of mass; default: a uniform "
-              "rectangle with a corner at the contact point", default="m*(xi**2 + eta**2)/3"),
+    Parameter(
+        name="xi",
+        unit="m",
+        sentence="contact point in the body's frame, along its first axis",
+        default="-3/5",
+        range="real",
+        latex=r"\xi",
+    ),
+    Parameter(
+        name="eta",
+        unit="m",
+        sentence="contact point in the body's frame, along its second axis",
+        default="-4/5",
+        range="real",
+        latex=r"\eta",
+    ),
+    Parameter(
+        name="I",
+        unit="kg m^2",
+        sentence="moment of inertia about the centre of mass; default: a uniform "
+        "rectangle with a corner at the contact point",
+        default="m*(xi**2 + eta**2)/3",
+    ),
     MU,
     GRAVITY,
-)  # fmt: skip
+)
 
 x, y, theta = (c.symbol for c in COORDINATES)
 u_x, u_y, u_theta = (c.velocity for c in COORDINATES)
@@ -62,13 +79,29 @@ SCENE = make_scene(
     outline=Outline(points=tuple((x + i, y + j) for i, j in corners), floor=sp.Integer(0)),
     # The contact point is at atan(4/3) below the body's first axis: these are the rod's states, turned.
     states=(
-        NamedState(name="sliding", sentence="gamma > 0: ordinary sliding, nothing is indeterminate",
-                   keys={"theta": "atan(2/11)"}, parameters={"mu": "1/2"}),
-        NamedState(name="paradox", sentence="gamma < 0: slide or jump to sticking",
-                   keys={"theta": "atan(2/11)"}, parameters={"mu": "2"}),
-        NamedState(name="critical", sentence="gamma = 0 on the lower edge of the band of paradoxes",
-                   keys={"theta": "atan(3 - sqrt(5)) - atan(4/3)"}, parameters={"mu": "2"}),
-        NamedState(name="double_zero", sentence="gamma = 0 at the least critical friction, where it touches zero",
-                   keys={"theta": "atan(2/11)"}, parameters={"mu": "4/3"}),
+        NamedState(
+            name="sliding",
+            sentence="gamma > 0: ordinary sliding, nothing is indeterminate",
+            keys={"theta": "atan(2/11)"},
+            parameters={"mu": "1/2"},
+        ),
+        NamedState(
+            name="paradox",
+            sentence="gamma < 0: slide or jump to sticking",
+            keys={"theta": "atan(2/11)"},
+            parameters={"mu": "2"},
+        ),
+        NamedState(
+            name="critical",
+            sentence="gamma = 0 on the lower edge of the band of paradoxes",
+            keys={"theta": "atan(3 - sqrt(5)) - atan(4/3)"},
+            parameters={"mu": "2"},
+        ),
+        NamedState(
+            name="double_zero",
+            sentence="gamma = 0 at the least critical friction, where it touches zero",
+            keys={"theta": "atan(2/11)"},
+            parameters={"mu": "4/3"},
+        ),
     ),
-)  # fmt: skip
+)

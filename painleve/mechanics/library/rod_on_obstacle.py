@@ -46,15 +46,35 @@ SCENE = make_scene(
     placement={"x": R * outward[0] - arm[0], "y": R * (outward[1] - 1) - arm[1], "theta": theta},
     velocity={"x": slip * along[0] + omega * arm[1], "y": slip * along[1] - omega * arm[0], "theta": omega},
     states=(
-        NamedState(name="sliding", sentence="gamma > 0: ordinary sliding, nothing is indeterminate",
-                   keys={"theta": "atan(2)"}, parameters={"mu": "1/2"}),
-        NamedState(name="paradox", sentence="gamma < 0: slide or jump to sticking",
-                   keys={"theta": "atan(2)"}, parameters={"mu": "2"}),
-        NamedState(name="critical", sentence="gamma = 0 on an edge of the band of paradoxes",
-                   keys={"theta": "pi/4"}, parameters={"mu": "5/3"}),
-        NamedState(name="double_zero", sentence="gamma = 0 at the least critical friction, that of the flat floor",
-                   keys={"theta": "atan(2)"}, parameters={"mu": "4/3"}),
-        NamedState(name="slope", sentence="the same on the obstacle's side: theta + psi = atan(2)",
-                   keys={"theta": "atan(2) - atan(3/4)", "psi": "atan(3/4)"}, parameters={"mu": "4/3"}),
+        NamedState(
+            name="sliding",
+            sentence="gamma > 0: ordinary sliding, nothing is indeterminate",
+            keys={"theta": "atan(2)"},
+            parameters={"mu": "1/2"},
+        ),
+        NamedState(
+            name="paradox",
+            sentence="gamma < 0: slide or jump to sticking",
+            keys={"theta": "atan(2)"},
+            parameters={"mu": "2"},
+        ),
+        NamedState(
+            name="critical",
+            sentence="gamma = 0 on an edge of the band of paradoxes",
+            keys={"theta": "pi/4"},
+            parameters={"mu": "5/3"},
+        ),
+        NamedState(
+            name="double_zero",
+            sentence="gamma = 0 at the least critical friction, that of the flat floor",
+            keys={"theta": "atan(2)"},
+            parameters={"mu": "4/3"},
+        ),
+        NamedState(
+            name="slope",
+            sentence="the same on the obstacle's side: theta + psi = atan(2)",
+            keys={"theta": "atan(2) - atan(3/4)", "psi": "atan(3/4)"},
+            parameters={"mu": "4/3"},
+        ),
     ),
-)  # fmt: skip
+)

@@ -11,22 +11,31 @@ COORDINATES = (
     Coordinate(name="y", unit="m", sentence="horizontal position of the centre, across x"),
     Coordinate(name="z", unit="m", sentence="height of the centre above the floor"),
     Coordinate(name="theta", unit="rad", sentence="inclination; the tip is below the centre", latex=r"\theta"),
-    Coordinate(name="phi", unit="rad", sentence="azimuth: the tip is behind the centre in this direction",
-               latex=r"\varphi"),
-)  # fmt: skip
+    Coordinate(
+        name="phi", unit="rad", sentence="azimuth: the tip is behind the centre in this direction", latex=r"\varphi"
+    ),
+)
 KEYS = (
     StateKey(name="theta", unit="rad", sentence="inclination", interval=("0", "pi/2")),
     StateKey(name="phi", unit="rad", sentence="azimuth of the rod", default="0"),
     StateKey(name="slip", unit="m/s", sentence="speed of the tip", default="1"),
-    StateKey(name="heading", unit="rad", sentence="direction of the tip's velocity against the azimuth (pi: the tip "
-             "moves away from the centre)", default="pi"),
-)  # fmt: skip
+    StateKey(
+        name="heading",
+        unit="rad",
+        sentence="direction of the tip's velocity against the azimuth (pi: the tip moves away from the centre)",
+        default="pi",
+    ),
+)
 
 
 def make_spatial_rod(
-    *, name: str, sentence: str, friction: Section, friction_parameters: tuple[Parameter, ...],
+    *,
+    name: str,
+    sentence: str,
+    friction: Section,
+    friction_parameters: tuple[Parameter, ...],
     states: tuple[NamedState, ...],
-) -> Scene:  # fmt: skip
+) -> Scene:
     """A rod in space on a floor with the given friction section; the states translate without turning."""
     x, y, z, theta, phi = (c.symbol for c in COORDINATES)
     m, l, I, gravity = (p.symbol for p in (*BODY, GRAVITY))  # noqa: E741 (the field's letters)
@@ -61,17 +70,41 @@ SCENE = make_spatial_rod(
     friction=Disc(mu=MU.symbol),
     friction_parameters=(MU,),
     states=(
-        NamedState(name="sliding", sentence="gamma > 0: ordinary sliding, nothing is indeterminate",
-                   keys={"theta": "atan(2)"}, parameters={"mu": "1/2"}),
-        NamedState(name="paradox", sentence="gamma < 0: slide or jump to sticking",
-                   keys={"theta": "atan(2)"}, parameters={"mu": "2"}),
-        NamedState(name="oblique", sentence="gamma < 0 and the slip is oblique: slide, or jump to another slip",
-                   keys={"theta": "atan(2)", "heading": "2*pi/3"}, parameters={"mu": "3/2"}),
-        NamedState(name="critical", sentence="gamma = 0, the slip parallel to b: the jump ends in sticking",
-                   keys={"theta": "atan(3 - sqrt(5))"}, parameters={"mu": "2"}),
-        NamedState(name="critical_oblique", sentence="gamma = 0 and the slip is oblique: the jump ends in slip",
-                   keys={"theta": "atan(3 - sqrt(5))", "heading": "3*pi/4"}, parameters={"mu": "2"}),
-        NamedState(name="double_zero", sentence="gamma = 0 at the least critical friction, where it touches zero",
-                   keys={"theta": "atan(2)", "heading": "3*pi/4"}, parameters={"mu": "4/3"}),
+        NamedState(
+            name="sliding",
+            sentence="gamma > 0: ordinary sliding, nothing is indeterminate",
+            keys={"theta": "atan(2)"},
+            parameters={"mu": "1/2"},
+        ),
+        NamedState(
+            name="paradox",
+            sentence="gamma < 0: slide or jump to sticking",
+            keys={"theta": "atan(2)"},
+            parameters={"mu": "2"},
+        ),
+        NamedState(
+            name="oblique",
+            sentence="gamma < 0 and the slip is oblique: slide, or jump to another slip",
+            keys={"theta": "atan(2)", "heading": "2*pi/3"},
+            parameters={"mu": "3/2"},
+        ),
+        NamedState(
+            name="critical",
+            sentence="gamma = 0, the slip parallel to b: the jump ends in sticking",
+            keys={"theta": "atan(3 - sqrt(5))"},
+            parameters={"mu": "2"},
+        ),
+        NamedState(
+            name="critical_oblique",
+            sentence="gamma = 0 and the slip is oblique: the jump ends in slip",
+            keys={"theta": "atan(3 - sqrt(5))", "heading": "3*pi/4"},
+            parameters={"mu": "2"},
+        ),
+        NamedState(
+            name="double_zero",
+            sentence="gamma = 0 at the least critical friction, where it touches zero",
+            keys={"theta": "atan(2)", "heading": "3*pi/4"},
+            parameters={"mu": "4/3"},
+        ),
     ),
-)  # fmt: skip
+)

@@ -12,11 +12,13 @@ from painleve.mechanics.library.slender_rod import GRAVITY, MU
 from painleve.mechanics.scene import Coordinate, NamedState, Outline, Parameter, Scene, StateKey, make_scene
 
 COORDINATES = (
-    Coordinate(name="phi1", unit="rad", sentence="angle of the first link from the downward vertical",
-               latex=r"\varphi_1"),
-    Coordinate(name="phi2", unit="rad", sentence="angle of the second link from the downward vertical",
-               latex=r"\varphi_2"),
-)  # fmt: skip
+    Coordinate(
+        name="phi1", unit="rad", sentence="angle of the first link from the downward vertical", latex=r"\varphi_1"
+    ),
+    Coordinate(
+        name="phi2", unit="rad", sentence="angle of the second link from the downward vertical", latex=r"\varphi_2"
+    ),
+)
 MASSES = (
     Parameter(name="m1", unit="kg", sentence="mass of the first link", default="1", latex="m_1"),
     Parameter(name="m2", unit="kg", sentence="mass of the second link", default="1", latex="m_2"),
@@ -25,8 +27,13 @@ LENGTHS = (
     Parameter(name="l1", unit="m", sentence="length of the first link", default="1", latex=r"\ell_1"),
     Parameter(name="l2", unit="m", sentence="length of the second link", default="1", latex=r"\ell_2"),
 )
-DEPTH = Parameter(name="depth", unit="m", sentence="depth of the table below the shoulder (default: where the tip is)",
-                  default="39/20", latex="H")  # fmt: skip
+DEPTH = Parameter(
+    name="depth",
+    unit="m",
+    sentence="depth of the table below the shoulder (default: where the tip is)",
+    default="39/20",
+    latex="H",
+)
 
 phi1, phi2 = (c.symbol for c in COORDINATES)
 u1, u2 = (c.velocity for c in COORDINATES)
@@ -41,9 +48,15 @@ tip = (elbow[0] + l2 * sp.sin(phi2), elbow[1] - l2 * sp.cos(phi2))
 
 
 def make_arm(
-    *, name: str, sentence: str, source: str, link_parameters: tuple[Parameter, ...], centres: tuple[sp.Expr, sp.Expr],
-    inertias: tuple[sp.Expr, sp.Expr], states: tuple[NamedState, ...],
-) -> Scene:  # fmt: skip
+    *,
+    name: str,
+    sentence: str,
+    source: str,
+    link_parameters: tuple[Parameter, ...],
+    centres: tuple[sp.Expr, sp.Expr],
+    inertias: tuple[sp.Expr, sp.Expr],
+    states: tuple[NamedState, ...],
+) -> Scene:
     """An arm of two links, each with its centre of mass on the line between its joints: how far from the upper one,
     and the moment of inertia about it, as expressions in the parameters."""
     d1, d2 = centres
@@ -62,8 +75,12 @@ def make_arm(
         friction=Segment(minus=mu, plus=mu),
         keys=(
             StateKey(name="phi1", unit="rad", sentence="angle of the first link"),
-            StateKey(name="phi2", unit="rad", sentence="angle of the second link; default: not below zero, and such "
-                     "that the tip is at the depth", default="acos((depth - l1*cos(phi1))/l2)"),
+            StateKey(
+                name="phi2",
+                unit="rad",
+                sentence="angle of the second link; default: not below zero, and such that the tip is at the depth",
+                default="acos((depth - l1*cos(phi1))/l2)",
+            ),
             StateKey(name="slip", unit="m/s", sentence="tangential speed of the tip", default="1"),
         ),
         placement={"phi1": phi1, "phi2": phi2},
@@ -74,7 +91,7 @@ def make_arm(
         contact_parameters={"depth": l1 * sp.cos(phi1) + l2 * sp.cos(phi2)},
         outline=Outline(points=((sp.Integer(0), sp.Integer(0)), elbow, tip), floor=-depth),
         states=states,
-    )  # fmt: skip
+    )
 
 
 # tan(phi1/2) = -1/12, tan(phi2/2) = 1/7: a local maximum of mu_c along the table
@@ -94,12 +111,24 @@ SCENE = make_arm(
     centres=(l1 / 2, l2 / 2),
     inertias=(m1 * l1**2 / 12, m2 * l2**2 / 12),
     states=(
-        NamedState(name="sliding", sentence="gamma > 0: ordinary sliding, nothing is indeterminate",
-                   keys=MAXIMUM, parameters={"mu": "1/2"}),
+        NamedState(
+            name="sliding",
+            sentence="gamma > 0: ordinary sliding, nothing is indeterminate",
+            keys=MAXIMUM,
+            parameters={"mu": "1/2"},
+        ),
         NamedState(name="paradox", sentence="gamma < 0: slide or jump to rest", keys=MAXIMUM, parameters={"mu": "1"}),
-        NamedState(name="approached", sentence="gamma = 0 at a local minimum of mu_c along the table",
-                   keys=MINIMUM, parameters={"m2": MINIMUM_MASS, "mu": MINIMUM_FRICTION}),
-        NamedState(name="isolated", sentence="gamma = 0 at a local maximum of mu_c along the table",
-                   keys=MAXIMUM, parameters={"m2": MAXIMUM_MASS, "mu": MAXIMUM_FRICTION}),
+        NamedState(
+            name="approached",
+            sentence="gamma = 0 at a local minimum of mu_c along the table",
+            keys=MINIMUM,
+            parameters={"m2": MINIMUM_MASS, "mu": MINIMUM_FRICTION},
+        ),
+        NamedState(
+            name="isolated",
+            sentence="gamma = 0 at a local maximum of mu_c along the table",
+            keys=MAXIMUM,
+            parameters={"m2": MAXIMUM_MASS, "mu": MAXIMUM_FRICTION},
+        ),
     ),
-)  # fmt: skip
+)

@@ -5,11 +5,23 @@ import sympy as sp
 from painleve.mechanics.library.slender_rod import COORDINATES, make_rod
 from painleve.mechanics.scene import NamedState, Parameter
 
-MU_0 = Parameter(name="mu_0", unit="1", sentence="coefficient of friction at the inclination theta_0", default="4/3",
-                 range="nonnegative", latex=r"\mu_0")  # fmt: skip
+MU_0 = Parameter(
+    name="mu_0",
+    unit="1",
+    sentence="coefficient of friction at the inclination theta_0",
+    default="4/3",
+    range="nonnegative",
+    latex=r"\mu_0",
+)
 K = Parameter(name="k", unit="1/rad^2", sentence="wear: mu = mu_0 + k (theta - theta_0)^2", default="2", range="real")
-THETA_0 = Parameter(name="theta_0", unit="rad", sentence="inclination of least friction", default="atan(2)",
-                    range="real", latex=r"\theta_0")  # fmt: skip
+THETA_0 = Parameter(
+    name="theta_0",
+    unit="rad",
+    sentence="inclination of least friction",
+    default="atan(2)",
+    range="real",
+    latex=r"\theta_0",
+)
 
 theta: sp.Symbol = COORDINATES[2].symbol
 
@@ -20,13 +32,29 @@ SCENE = make_rod(
     friction_coefficient=MU_0.symbol + K.symbol * (theta - THETA_0.symbol) ** 2,
     # The critical friction has the second derivative 25/3 at arctan 2: k = 25/6 parts the two kinds of critical state.
     states=(
-        NamedState(name="sliding", sentence="gamma > 0: ordinary sliding, nothing is indeterminate",
-                   keys={"theta": "atan(2)"}, parameters={"mu_0": "1/2", "k": "2"}),
-        NamedState(name="paradox", sentence="gamma < 0: slide or jump to sticking",
-                   keys={"theta": "atan(2)"}, parameters={"mu_0": "2", "k": "2"}),
-        NamedState(name="approached", sentence="gamma = 0, positive on both sides: k = 2 < 25/6",
-                   keys={"theta": "atan(2)"}, parameters={"k": "2"}),
-        NamedState(name="isolated", sentence="gamma = 0, negative on both sides: k = 6 > 25/6",
-                   keys={"theta": "atan(2)"}, parameters={"k": "6"}),
+        NamedState(
+            name="sliding",
+            sentence="gamma > 0: ordinary sliding, nothing is indeterminate",
+            keys={"theta": "atan(2)"},
+            parameters={"mu_0": "1/2", "k": "2"},
+        ),
+        NamedState(
+            name="paradox",
+            sentence="gamma < 0: slide or jump to sticking",
+            keys={"theta": "atan(2)"},
+            parameters={"mu_0": "2", "k": "2"},
+        ),
+        NamedState(
+            name="approached",
+            sentence="gamma = 0, positive on both sides: k = 2 < 25/6",
+            keys={"theta": "atan(2)"},
+            parameters={"k": "2"},
+        ),
+        NamedState(
+            name="isolated",
+            sentence="gamma = 0, negative on both sides: k = 6 > 25/6",
+            keys={"theta": "atan(2)"},
+            parameters={"k": "6"},
+        ),
     ),
-)  # fmt: skip
+)

@@ -45,9 +45,11 @@ def scene_of_text(name: str, text: str) -> Scene:
     rows = [*derivation.normal_response, *(derivation.tangent_response or ()), *scene.force]
     nodes = nodes_of(rows)
     if nodes > MOST_NODES:
-        raise InputError(f"{name}: the derived formulas have {nodes} numbers, names and operations, more than "
-                         f"{MOST_NODES}; shorten the formulas of the inertia (it is sparse in coordinates of "
-                         "the centre of mass) or use fewer coordinates")  # fmt: skip
+        raise InputError(
+            f"{name}: the derived formulas have {nodes} numbers, names and operations, more than "
+            f"{MOST_NODES}; shorten the formulas of the inertia (it is sparse in coordinates of "
+            "the centre of mass) or use fewer coordinates"
+        )
     return scene
 
 
@@ -69,13 +71,14 @@ def _scene(document: Document) -> Scene:
     rules = _rules(fields, coordinates, parameters, keys)
     _refuse_idle_keys(fields, keys, rules)
     parts: dict[str, Any] = {
-        **read_motion(fields["mechanics"], q, u, p), **read_contact(fields["contact"], fields.get("friction"), q, p),
+        **read_motion(fields["mechanics"], q, u, p),
+        **read_contact(fields["contact"], fields.get("friction"), q, p),
         **rules,
         "states": _states(fields.get("states"), coordinates, parameters, keys),
         "outline": _outline(fields.get("outline"), q, p),
         "sentence": fields["sentence"].sentence(),
         "source": fields["source"].sentence() if "source" in fields else f"a scene file, {name}",
-    }  # fmt: skip
+    }
     try:
         scene = make_scene(name=name, coordinates=coordinates, parameters=parameters, keys=keys, **parts)
     except InputError as error:
@@ -108,8 +111,12 @@ def _symbol_name(field: Field, name: str, *, coordinate: bool = False) -> str:
 def _coordinate(name: str, field: Field) -> Coordinate:
     name = _symbol_name(field, name, coordinate=True)
     fields = field.table(("unit", "sentence"), ("latex",))
-    return Coordinate(name=name, unit=fields["unit"].unit(), sentence=fields["sentence"].sentence(),
-                      latex=fields["latex"].latex() if "latex" in fields else "")  # fmt: skip
+    return Coordinate(
+        name=name,
+        unit=fields["unit"].unit(),
+        sentence=fields["sentence"].sentence(),
+        latex=fields["latex"].latex() if "latex" in fields else "",
+    )
 
 
 def _parameters(field: Field | None) -> tuple[Parameter, ...]:
@@ -129,9 +136,14 @@ def _parameter(name: str, field: Field, before: Symbols) -> Parameter:
     fields = field.table(("unit", "sentence", "default"), ("range", "latex"))
     fields["default"].formula(before)
     range_ = fields["range"].choice(("positive", "nonnegative", "real")) if "range" in fields else "positive"
-    return Parameter(name=name, unit=fields["unit"].unit(), sentence=fields["sentence"].sentence(),
-                     default=fields["default"].formula_text(), range=cast(Range, range_),
-                     latex=fields["latex"].latex() if "latex" in fields else "")  # fmt: skip
+    return Parameter(
+        name=name,
+        unit=fields["unit"].unit(),
+        sentence=fields["sentence"].sentence(),
+        default=fields["default"].formula_text(),
+        range=cast(Range, range_),
+        latex=fields["latex"].latex() if "latex" in fields else "",
+    )
 
 
 def _key(name: str, field: Field) -> StateKey:
@@ -153,9 +165,11 @@ def _refuse_shared(fields: Mapping[str, Field], q: Symbols, p: Symbols, keys: Sy
 
 
 def _rules(
-    fields: Mapping[str, Field], coordinates: tuple[Coordinate, ...], parameters: tuple[Parameter, ...],
+    fields: Mapping[str, Field],
+    coordinates: tuple[Coordinate, ...],
+    parameters: tuple[Parameter, ...],
     keys: tuple[StateKey, ...],
-) -> dict[str, dict[str, sp.Expr]]:  # fmt: skip
+) -> dict[str, dict[str, sp.Expr]]:
     """Where the keys put q, u and parameters; a key with the name of a coordinate is that coordinate unless told."""
     symbols = {**_symbols(keys), **_symbols(parameters)}
     moving, fixed = [c.name for c in coordinates], [p.name for p in parameters]
@@ -179,9 +193,11 @@ def _refuse_idle_keys(
 
 
 def _states(
-    field: Field | None, coordinates: tuple[Coordinate, ...], parameters: tuple[Parameter, ...],
+    field: Field | None,
+    coordinates: tuple[Coordinate, ...],
+    parameters: tuple[Parameter, ...],
     keys: tuple[StateKey, ...],
-) -> tuple[NamedState, ...]:  # fmt: skip
+) -> tuple[NamedState, ...]:
     if field is None:
         return ()
     components = [c.name for c in coordinates] + [f"u_{c.name}" for c in coordinates]
@@ -189,11 +205,15 @@ def _states(
     found = []
     for name, state in field.named(MOST_STATES).items():
         parts = state.table(("sentence",), ("keys", "parameters"))
-        found.append(NamedState(
-            name=_named(state, name), sentence=parts["sentence"].sentence(),
-            keys=_values(parts.get("keys"), given),
-            parameters=_values(parts.get("parameters"), [p.name for p in parameters]), place=state.where,
-        ))  # fmt: skip
+        found.append(
+            NamedState(
+                name=_named(state, name),
+                sentence=parts["sentence"].sentence(),
+                keys=_values(parts.get("keys"), given),
+                parameters=_values(parts.get("parameters"), [p.name for p in parameters]),
+                place=state.where,
+            )
+        )
     return tuple(found)
 
 

@@ -41,8 +41,10 @@ def smooth(field: Field, known: Symbols) -> sp.Expr:
     """A formula that is differentiated later: |.| of something that may change its sign has no derivative there."""
     formula = field.formula(known)
     if formula.has(sp.Abs, sp.sign):
-        raise field.refuse("this formula is differentiated, and abs (or the root of a square) has no derivative at 0; "
-                           "write it without, or give the range \"positive\" to what is inside")  # fmt: skip
+        raise field.refuse(
+            "this formula is differentiated, and abs (or the root of a square) has no derivative at 0; "
+            'write it without, or give the range "positive" to what is inside'
+        )
     return formula
 
 
@@ -67,8 +69,10 @@ def _hessian(field: Field, q: Symbols, u: Symbols, p: Symbols) -> sp.MatrixBase:
         held = [i for i, v in enumerate(velocities) for _ in range(_power(powers.get(v, 0)))]
         rest = term / sp.prod(velocities[i] for i in held)
         if len(held) != 2 or rest.free_symbols & set(velocities):
-            raise field.refuse("the kinetic energy is not a quadratic form in the velocities "
-                               f"{', '.join(u)}: it has the term {str(term)[:80]}")  # fmt: skip
+            raise field.refuse(
+                "the kinetic energy is not a quadratic form in the velocities "
+                f"{', '.join(u)}: it has the term {str(term)[:80]}"
+            )
         i, j = held
         M[i, j] += rest
         M[j, i] += rest
@@ -81,14 +85,15 @@ def _power(exponent: Any) -> int:
 
 def _matrix(field: Field, q: Symbols, p: Symbols) -> sp.MatrixBase:
     """M, row by row; its two halves have to agree once they are multiplied out."""
-    rows = [row.array(len(q), length=len(q), what="entries")
-            for row in field.array(len(q), length=len(q), what="rows")]  # fmt: skip
+    rows = [row.array(len(q), length=len(q), what="entries") for row in field.array(len(q), length=len(q), what="rows")]
     M = sp.Matrix([[smooth(entry, {**q, **p}) for entry in row] for row in rows])
     for i in range(len(q)):
         for j in range(i):
             if _expanded(rows[i][j], M[i, j]) != _expanded(rows[j][i], M[j, i]):
-                raise rows[i][j].refuse(f"M is not symmetric: {str(M[i, j])[:60]} here, but {str(M[j, i])[:60]} in "
-                                        f"{rows[j][i].label}; write both alike")  # fmt: skip
+                raise rows[i][j].refuse(
+                    f"M is not symmetric: {str(M[i, j])[:60]} here, but {str(M[j, i])[:60]} in "
+                    f"{rows[j][i].label}; write both alike"
+                )
             M[i, j] = M[j, i]
     return M
 
@@ -112,8 +117,9 @@ def read_contact(field: Field, friction: Field | None, q: Symbols, p: Symbols) -
         )
     return {
         "constraint": -constraint if "height" in fields else constraint,
-        "tangential_displacements": formulas, "friction": section,
-    }  # fmt: skip
+        "tangential_displacements": formulas,
+        "friction": section,
+    }
 
 
 def _one_or_more(field: Field) -> list[Field]:

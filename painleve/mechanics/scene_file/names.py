@@ -30,10 +30,12 @@ IN_SWEEPS = _words(
 )
 IN_SWEEPS_PREFIXES = ("excess_", "ends_", "hausdorff_", "farthest_")
 
-_LETTER = "|".join(_words(
-    "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi pi rho sigma tau"
-    " upsilon phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega ell"
-))  # fmt: skip
+_LETTER = "|".join(
+    _words(
+        "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi pi rho sigma tau"
+        " upsilon phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega ell"
+    )
+)
 _ATOM = rf"(?:[A-Za-z0-9]|\\(?:{_LETTER}))"
 _LATEX = re.compile(rf"{_ATOM}'{{0,2}}(?:[_^](?:{_ATOM}|\{{[A-Za-z0-9 ,+-]{{1,16}}\}})){{0,2}}", re.ASCII)
 

@@ -110,8 +110,10 @@ def find_jean_condition(*, quick: bool, seed: int) -> Found:
         condition = abs(mu * G[0, 1] / G[0, 0]) < 1.0
         exceptions += not (single == condition == (gamma > 0.0))
         unique += single
-    route = (f"every mode tried for {VELOCITIES + 2} velocities at {count} random rods: one solution at {unique}, "
-             f"and these are the rods with gamma > 0; exceptions: {exceptions}")  # fmt: skip
+    route = (
+        f"every mode tried for {VELOCITIES + 2} velocities at {count} random rods: one solution at {unique}, "
+        f"and these are the rods with gamma > 0; exceptions: {exceptions}"
+    )
     return Found(value="iff gamma > 0" if exceptions == 0 else f"{exceptions} exceptions", route=route)
 
 

@@ -125,13 +125,14 @@ def _fact(where: str, entry: object, sources: Mapping[str, Source]) -> Fact:
     if not all(isinstance(symbol, str) and symbol.isidentifier() for symbol in symbols):  # type: ignore[attr-defined]
         raise InputError(f"{where}: symbols must be a list of names")
     fact = Fact(
-        **fields | {  # type: ignore[arg-type]
+        **fields
+        | {  # type: ignore[arg-type]
             "kind": _choice(where, "kind", fields["kind"], Kind),
             "basis": _choice(where, "basis", fields["basis"], Basis),
             "source": sources[str(fields["source"])],
             "symbols": tuple(symbols),  # type: ignore[arg-type]
         }
-    )  # fmt: skip
+    )
     _check_value(where, fact)
     return fact
 

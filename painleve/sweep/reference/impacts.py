@@ -34,13 +34,20 @@ def find_impact_ends_in_stick(*, quick: bool) -> Found:
     for stiffness in QUICK_STIFFNESSES if quick else STIFFNESSES:
         duration = 12.0 / math.sqrt(stiffness)
         for slip_speed in SLIP_SPEEDS:
-            run = simulate(state, scheme="compliant", step=duration / 300.0, until=duration,
-                           options={"stiffness": stiffness, "slip_speed": slip_speed})  # fmt: skip
+            run = simulate(
+                state,
+                scheme="compliant",
+                step=duration / 300.0,
+                until=duration,
+                options={"stiffness": stiffness, "slip_speed": slip_speed},
+            )
             v_t = abs(_velocity_at_opening(run))
             largest = max(largest, v_t / slip_speed)
             words.append(f"{v_t:.0e} m/s ({stiffness:g} N/m, {slip_speed:g} m/s)")
-    route = (f"compliant contact from slip -1 at tan(theta) = 2, mu = 2 (stiffness, speed over which friction is "
-             f"regularised): |v_t| = {', '.join(words)}; at most {largest:.2f} of that speed")  # fmt: skip
+    route = (
+        f"compliant contact from slip -1 at tan(theta) = 2, mu = 2 (stiffness, speed over which friction is "
+        f"regularised): |v_t| = {', '.join(words)}; at most {largest:.2f} of that speed"
+    )
     return Found(value="zero" if largest < 1.0 else "not zero", route=route)
 
 

@@ -13,35 +13,37 @@ from painleve.sweep.reference.facts import Fact
 __all__ = ["ROUTES", "reproduce"]
 
 # quick: fewer random states, slips and stiffnesses; seed: of the random states
-ROUTES: Mapping[str, Callable[[bool, int], Found]] = MappingProxyType({
-    "least_friction": lambda quick, seed: rod.find_least_friction(slope=False),
-    "least_friction_slope": lambda quick, seed: rod.find_least_friction(slope=True),
-    "mu_P": lambda quick, seed: rod.find_mu_P(slope=False),
-    "mu_P_slope": lambda quick, seed: rod.find_mu_P(slope=True),
-    "lower_band_edge": lambda quick, seed: rod.find_band_edge(upper=False),
-    "upper_band_edge": lambda quick, seed: rod.find_band_edge(upper=True),
-    "sixty_degrees_friction": lambda quick, seed: rod.find_sixty_degrees_friction(),
-    "force_at_rest": lambda quick, seed: rod.find_force_at_rest(),
-    "jean_condition": lambda quick, seed: contact.find_jean_condition(quick=quick, seed=seed),
-    "regime_slip": lambda quick, seed: contact.find_regime("0", "1", quick=quick, seed=seed),
-    "regime_lift_off": lambda quick, seed: contact.find_regime("6", "1", quick=quick, seed=seed),
-    "regime_inconsistent": lambda quick, seed: contact.find_regime("0", "2", quick=quick, seed=seed),
-    "regime_indeterminate": lambda quick, seed: contact.find_regime("6", "2", quick=quick, seed=seed),
-    "singular_rate": lambda quick, seed: rod.find_singular_rate(),
-    "eigenvalue_ratio": lambda quick, seed: rod.find_eigenvalue_ratio(),
-    "mu_C": lambda quick, seed: rod.find_mu_C(uniform=False),
-    "mu_C_uniform": lambda quick, seed: rod.find_mu_C(uniform=True),
-    "bounded_force": lambda quick, seed: slips.find_bounded_force(quick=quick),
-    "infinite_force": lambda quick, seed: slips.find_infinite_force(quick=quick),
-    "inconsistent_not_reached": lambda quick, seed: slips.find_inconsistent_not_reached(quick=quick),
-    "stoss_angle": lambda quick, seed: slips.find_stoss_angle(),
-    "stoss_time": lambda quick, seed: slips.find_stoss_time(),
-    "impact_ends_in_stick": lambda quick, seed: impacts.find_impact_ends_in_stick(quick=quick),
-    "impact_must_follow": lambda quick, seed: impacts.find_impact_must_follow(quick=quick),
-    "stewart_45": lambda quick, seed: contact.find_stewart_start("pi/4", "-1"),
-    "stewart_135": lambda quick, seed: contact.find_stewart_start("3*pi/4", "1"),
-    "stewart_rest": lambda quick, seed: impacts.find_stewart_rest(),
-})  # fmt: skip
+ROUTES: Mapping[str, Callable[[bool, int], Found]] = MappingProxyType(
+    {
+        "least_friction": lambda quick, seed: rod.find_least_friction(slope=False),
+        "least_friction_slope": lambda quick, seed: rod.find_least_friction(slope=True),
+        "mu_P": lambda quick, seed: rod.find_mu_P(slope=False),
+        "mu_P_slope": lambda quick, seed: rod.find_mu_P(slope=True),
+        "lower_band_edge": lambda quick, seed: rod.find_band_edge(upper=False),
+        "upper_band_edge": lambda quick, seed: rod.find_band_edge(upper=True),
+        "sixty_degrees_friction": lambda quick, seed: rod.find_sixty_degrees_friction(),
+        "force_at_rest": lambda quick, seed: rod.find_force_at_rest(),
+        "jean_condition": lambda quick, seed: contact.find_jean_condition(quick=quick, seed=seed),
+        "regime_slip": lambda quick, seed: contact.find_regime("0", "1", quick=quick, seed=seed),
+        "regime_lift_off": lambda quick, seed: contact.find_regime("6", "1", quick=quick, seed=seed),
+        "regime_inconsistent": lambda quick, seed: contact.find_regime("0", "2", quick=quick, seed=seed),
+        "regime_indeterminate": lambda quick, seed: contact.find_regime("6", "2", quick=quick, seed=seed),
+        "singular_rate": lambda quick, seed: rod.find_singular_rate(),
+        "eigenvalue_ratio": lambda quick, seed: rod.find_eigenvalue_ratio(),
+        "mu_C": lambda quick, seed: rod.find_mu_C(uniform=False),
+        "mu_C_uniform": lambda quick, seed: rod.find_mu_C(uniform=True),
+        "bounded_force": lambda quick, seed: slips.find_bounded_force(quick=quick),
+        "infinite_force": lambda quick, seed: slips.find_infinite_force(quick=quick),
+        "inconsistent_not_reached": lambda quick, seed: slips.find_inconsistent_not_reached(quick=quick),
+        "stoss_angle": lambda quick, seed: slips.find_stoss_angle(),
+        "stoss_time": lambda quick, seed: slips.find_stoss_time(),
+        "impact_ends_in_stick": lambda quick, seed: impacts.find_impact_ends_in_stick(quick=quick),
+        "impact_must_follow": lambda quick, seed: impacts.find_impact_must_follow(quick=quick),
+        "stewart_45": lambda quick, seed: contact.find_stewart_start("pi/4", "-1"),
+        "stewart_135": lambda quick, seed: contact.find_stewart_start("3*pi/4", "1"),
+        "stewart_rest": lambda quick, seed: impacts.find_stewart_rest(),
+    }
+)
 
 
 def reproduce(

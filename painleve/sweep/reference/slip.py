@@ -117,9 +117,14 @@ class SlipFlow:
         angle, rate, t = found.y
         beta = -np.array([self.push(x, w) for x, w in zip(angle, rate, strict=True)]) / self.gravity
         return Arc(
-            theta=angle, omega=rate, t=t, distance=sense * (edge - angle), beta=beta,
-            force=-beta / np.array([self.edge(x) for x in angle]), end=next(end for end, times in ends if len(times)),
-        )  # fmt: skip
+            theta=angle,
+            omega=rate,
+            t=t,
+            distance=sense * (edge - angle),
+            beta=beta,
+            force=-beta / np.array([self.edge(x) for x in angle]),
+            end=next(end for end, times in ends if len(times)),
+        )
 
     def _rate(self, tau: float, y: np.ndarray) -> list[float]:
         theta, omega, _ = map(float, y)
@@ -144,6 +149,9 @@ def make_flow(mu: float, *, alpha: float = 3.0, gravity: float = 9.81) -> SlipFl
     bottom = brentq(sp.lambdify([theta], sp.diff(edge, theta), "math"), 0.1, math.pi / 2)
     brackets = ((0.0, bottom), (bottom, math.pi / 2))
     return SlipFlow(
-        gravity=gravity, edges=tuple(brentq(compliance, *ends, xtol=1e-16) for ends in brackets), edge=compliance,
-        push=sp.lambdify([theta, omega], push, "math"), turn=sp.lambdify([theta, omega], turn, "math"),
-    )  # fmt: skip
+        gravity=gravity,
+        edges=tuple(brentq(compliance, *ends, xtol=1e-16) for ends in brackets),
+        edge=compliance,
+        push=sp.lambdify([theta, omega], push, "math"),
+        turn=sp.lambdify([theta, omega], turn, "math"),
+    )

@@ -54,8 +54,10 @@ def find_bounded_force(*, quick: bool) -> Found:
     arcs = [arc for mu in BELOW for arc in fan(mu, _shares(quick))]
     lifted = sum(arc.end is ArcEnd.LIFT_OFF for arc in arcs)
     nearest, growth = min(arc.distance[-1] for arc in arcs), max(arc.force.max() / arc.force[0] for arc in arcs)
-    route = (f"{len(arcs)} slips at mu = {_listed(BELOW)}: {lifted} lift off before the edge, the nearest at "
-             f"{nearest:.1g} rad; no force exceeds {growth:.3f} times that at its start")  # fmt: skip
+    route = (
+        f"{len(arcs)} slips at mu = {_listed(BELOW)}: {lifted} lift off before the edge, the nearest at "
+        f"{nearest:.1g} rad; no force exceeds {growth:.3f} times that at its start"
+    )
     return Found(value="bounded" if lifted == len(arcs) else "not bounded", route=route)
 
 
@@ -68,8 +70,10 @@ def find_infinite_force(*, quick: bool) -> Found:
         misfit = max((fit[1] for fit in fits), default=math.inf)
         largest = max((arc.force[-1] for arc in arrived), default=0.0)
         grows &= ratio < 1.0 and misfit < MISFIT and all(fit[0] > 0.0 for fit in fits)
-        words.append(f"mu = {mu:.4g}: {len(arrived)} come within {NEAREST:g} rad, there F is up to {largest:.0e} "
-                     f"m gravity and A x^{ratio - 1.0:.3f} + B to {misfit:.0e}")  # fmt: skip
+        words.append(
+            f"mu = {mu:.4g}: {len(arrived)} come within {NEAREST:g} rad, there F is up to {largest:.0e} "
+            f"m gravity and A x^{ratio - 1.0:.3f} + B to {misfit:.0e}"
+        )
     return Found(value="infinite" if grows else "not so", route="; ".join(words))
 
 
@@ -83,9 +87,11 @@ def find_inconsistent_not_reached(*, quick: bool) -> Found:
     vanishing = sum(arc.beta[-1] / arc.beta[_first_near(arc)] < 2.0 * (NEAREST / NEAR) ** r for r, arc in arrived)
     largest = max((-arc.beta[-1] for _, arc in arrived), default=0.0)
     others = len(arcs) - lifted - turned - vanishing
-    route = (f"{len(arcs)} slips from either side of the band at mu = {_listed(mus)}: {lifted} lift off, {turned} turn "
-             f"back, {vanishing} end in the 0/0 point (|beta| <= {largest:.0e} gravity at {NEAREST:g} rad, falling "
-             f"like x^r), {others} elsewhere")  # fmt: skip
+    route = (
+        f"{len(arcs)} slips from either side of the band at mu = {_listed(mus)}: {lifted} lift off, {turned} turn "
+        f"back, {vanishing} end in the 0/0 point (|beta| <= {largest:.0e} gravity at {NEAREST:g} rad, falling "
+        f"like x^r), {others} elsewhere"
+    )
     return Found(value="not reached" if others == 0 else "reached", route=route)
 
 
