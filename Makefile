@@ -29,6 +29,7 @@ test: lint types contracts $(NOTEBOOKS) ## install, then check the code, run the
 
 lint: install ## check the code with ruff
 	$(BIN)/ruff check .
+	$(BIN)/ruff format --check --quiet .
 
 types: install ## check the types with mypy
 	$(BIN)/mypy
