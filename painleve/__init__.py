@@ -12,15 +12,11 @@ from painleve.figures import announce
 
 if TYPE_CHECKING:
     from painleve.asymptotics.certify.method import CertifyOptions
-    from painleve.asymptotics.coulomb.one_step import coulomb_solutions
-    from painleve.asymptotics.critical import critical_states
-    from painleve.asymptotics.hypotheses import check_hypotheses
-    from painleve.asymptotics.limit_set import limit_set
     from painleve.asymptotics.methods import distance
     from painleve.asymptotics.optimise import OptimiseOptions
     from painleve.asymptotics.rates import rate
     from painleve.asymptotics.sample import SampleOptions
-    from painleve.asymptotics.theorem import classify, collect, judge
+    from painleve.asymptotics.theorem import collect, judge
     from painleve.asymptotics.witness import find_family, find_witness
     from painleve.dynamics.ensemble import run_ensemble
     from painleve.dynamics.simulate import simulate
@@ -35,6 +31,11 @@ if TYPE_CHECKING:
     from painleve.store import load, save
     from painleve.sweep.distances import sweep_distances
     from painleve.sweep.trajectories import trajectory_dataset
+    from painleve.theory.classification import classify
+    from painleve.theory.coulomb.one_step import coulomb_solutions
+    from painleve.theory.critical import critical_states
+    from painleve.theory.hypotheses.check import check_hypotheses
+    from painleve.theory.limit_set import limit_set
 
 _HOMES = {
     "CertifyOptions": "painleve.asymptotics.certify.method",
@@ -51,18 +52,18 @@ _HOMES = {
     "SampleOptions": "painleve.asymptotics.sample",
     "Segment": "painleve.mechanics.friction",
     "StateKey": "painleve.mechanics.scene",
-    "check_hypotheses": "painleve.asymptotics.hypotheses",
-    "classify": "painleve.asymptotics.theorem",
+    "check_hypotheses": "painleve.theory.hypotheses.check",
+    "classify": "painleve.theory.classification",
     "collect": "painleve.asymptotics.theorem",
-    "coulomb_solutions": "painleve.asymptotics.coulomb.one_step",
-    "critical_states": "painleve.asymptotics.critical",
+    "coulomb_solutions": "painleve.theory.coulomb.one_step",
+    "critical_states": "painleve.theory.critical",
     "derive": "painleve.mechanics.derive",
     "distance": "painleve.asymptotics.methods",
     "draw": "painleve.plotting.draw",
     "find_family": "painleve.asymptotics.witness",
     "find_witness": "painleve.asymptotics.witness",
     "judge": "painleve.asymptotics.theorem",
-    "limit_set": "painleve.asymptotics.limit_set",
+    "limit_set": "painleve.theory.limit_set",
     "load": "painleve.store",
     "load_scene": "painleve.mechanics.library",
     "make_scene": "painleve.mechanics.scene",

@@ -1,8 +1,8 @@
 """The one decorator for compiled code, and the directory in which compiled code is kept.
 
 Numba's disk cache watches only the file of the function that it stores, so a caller stays stale when a callee in
-another file changes. The cache directory is therefore named by a digest of all sources of the package and of the
-versions that matter, and is set before anything is compiled.
+another file changes. The cache directory is therefore named by a digest of the sources that compiled code can come
+from and of the versions that matter, and is set before anything is compiled.
 """
 
 from __future__ import annotations
@@ -18,13 +18,17 @@ import numba
 
 __all__ = ["GENERATED_DIR", "jit"]
 
+# Only these import numba; an import contract of pyproject.toml holds it. What the kernels print from a scene stands in
+# files that are named by a digest of their own text.
+COMPILED_SOURCES = ("_jit.py", "core", "kernels")
+
 
 def _sources_digest() -> str:
     digest = hashlib.sha256()
     versions = (numba.__version__, metadata.version("numpy"), platform.python_version())
     digest.update(" ".join(versions).encode())
     root = Path(__file__).parent
-    for path in sorted(root.rglob("*.py")):
+    for path in sorted(p for p in root.rglob("*.py") if p.relative_to(root).parts[0] in COMPILED_SOURCES):
         digest.update(path.relative_to(root).as_posix().encode())
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]

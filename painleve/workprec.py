@@ -11,14 +11,14 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-__all__ = ["MISLEADING_FACTOR", "Outcome", "Record", "Run", "Timed", "measure", "timed"]
+__all__ = ["MISLEADING_FACTOR", "Record", "Run", "RunOutcome", "Timed", "measure", "timed"]
 
 Result = TypeVar("Result")
 
 MISLEADING_FACTOR = 2.0  # a number further off than this is no estimate of the reference, whatever it bounds
 
 
-class Outcome(Enum):
+class RunOutcome(Enum):
     """How a run ended. MISLEADING: it ended well, and its number is more than MISLEADING_FACTOR off the reference."""
 
     DONE = "done"
@@ -56,7 +56,7 @@ class Record:
     evaluations: int
     first_seconds: float
     seconds: float
-    outcome: Outcome
+    outcome: RunOutcome
     sentence: str
 
 
@@ -108,7 +108,7 @@ def measure(
         outcome = _judge(found.value, reference)
     except (ArithmeticError, ValueError) as error:
         found = Run(value=math.nan, evaluations=0, sentence=str(error))
-        first, warm, outcome = clock() - start, math.nan, Outcome.FAILED
+        first, warm, outcome = clock() - start, math.nan, RunOutcome.FAILED
     return Record(
         problem=problem,
         method=method,
@@ -134,6 +134,6 @@ def _warm_runs(run: Callable[[], object], repetitions: int, patience: float, clo
     return float(np.median(seconds))
 
 
-def _judge(value: float, reference: float) -> Outcome:
+def _judge(value: float, reference: float) -> RunOutcome:
     near = reference / MISLEADING_FACTOR <= value <= reference * MISLEADING_FACTOR
-    return Outcome.DONE if near else Outcome.MISLEADING
+    return RunOutcome.DONE if near else RunOutcome.MISLEADING

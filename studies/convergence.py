@@ -35,11 +35,11 @@ from tqdm import tqdm
 from painleve.plotting import draw, save_figure
 from painleve.store import check_writable, save
 from painleve.sweep import StudyResult
-from painleve.sweep.convergence import VERDICTS, Effort, sweep_convergence
+from painleve.sweep.convergence import VERDICTS, MotionEffort, sweep_convergence
 from painleve.sweep.text_table import text_table
 from painleve.sweep.variables import OUTCOMES
 
-QUICK = Effort(
+QUICK = MotionEffort(
     most=5000,
     levels=4,
     phases=3,
@@ -72,7 +72,7 @@ def run(output: Path, *, quick: bool = False, seed: int = 0) -> StudyResult:
             bar.set_description(label)
             bar.update()
 
-        dataset = sweep_convergence(effort=QUICK if quick else Effort(), seed=seed, progress=progress)
+        dataset = sweep_convergence(effort=QUICK if quick else MotionEffort(), seed=seed, progress=progress)
     figure = draw(dataset)
     files = [save(dataset, output / "convergence.h5")]
     files += [save_figure(figure, output / f"convergence.{suffix}") for suffix in ("pdf", "png")]

@@ -25,7 +25,6 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from painleve.asymptotics.coulomb.one_step import Enumeration, coulomb_solutions
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import State, make_state
@@ -34,6 +33,7 @@ from painleve.store import check_writable, save
 from painleve.sweep import StudyResult
 from painleve.sweep.laws import map_laws
 from painleve.sweep.text_table import text_table
+from painleve.theory.coulomb.one_step import Enumeration, coulomb_solutions
 
 INCLINATIONS = ("pi/4", "atan(2)")
 APPROACHES = (-1.0, -0.1, -0.01, 0.0)

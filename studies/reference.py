@@ -27,7 +27,7 @@ from tqdm import tqdm
 from painleve.plotting import draw, save_figure
 from painleve.store import check_writable, save
 from painleve.sweep import StudyResult
-from painleve.sweep.reference import Reproduction, Status, as_dataset, load_facts, reproduce
+from painleve.sweep.reference import FactStatus, Reproduction, as_dataset, load_facts, reproduce
 from painleve.sweep.text_table import text_table
 
 FACTS = Path(__file__).parents[1] / "data" / "reference" / "facts.toml"
@@ -62,7 +62,7 @@ def _table(found: Sequence[Reproduction]) -> str:
 
 def _found(r: Reproduction) -> str:
     """The found value; of a formula that equals the published one, in whatever form, that it does."""
-    if r.status is Status.REPRODUCED and r.fact.symbols:
+    if r.status is FactStatus.REPRODUCED and r.fact.symbols:
         return "the same expression"
     return f"{r.found.value:.12g}" if isinstance(r.found.value, float) else str(r.found.value)
 
@@ -107,6 +107,6 @@ def _row(r: Reproduction) -> dict[str, object]:
 
 
 def _status(found: Sequence[Reproduction]) -> str:
-    counts = {status: sum(r.status is status for r in found) for status in Status}
+    counts = {status: sum(r.status is status for r in found) for status in FactStatus}
     said = ", ".join(f"{number} {status.value}" for status, number in counts.items() if number)
     return f"{len(found)} published facts: {said}."

@@ -34,7 +34,7 @@ from painleve.plotting import draw, save_figure
 from painleve.store import check_writable, save
 from painleve.sweep import StudyResult
 from painleve.sweep.text_table import text_table
-from painleve.sweep.work_precision import NAIVE, RUN_OUTCOMES, Effort, sweep_work_precision
+from painleve.sweep.work_precision import NAIVE, RUN_OUTCOMES, DistanceEffort, sweep_work_precision
 
 EPS = 1e-3
 STATES = (
@@ -45,12 +45,12 @@ STATES = (
     ("two_link_arm", "isolated"),
 )
 QUICK_STATES = STATES[:4]
-EFFORT = Effort(
+EFFORT = DistanceEffort(
     samples=(10**3, 10**4, 10**5, 10**6, 10**7),
     naive_samples=(10**3, 10**4, 10**5, 10**6),
     widths=(1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6),
 )
-QUICK_EFFORT = Effort(
+QUICK_EFFORT = DistanceEffort(
     samples=(10**3, 10**5), naive_samples=(10**3, 10**5), widths=(1e-1, 1e-3), reference_width=1e-5, repetitions=1
 )
 COLUMNS = (

@@ -31,7 +31,7 @@ import xarray as xr
 from tqdm import tqdm
 
 from painleve.asymptotics.sample import SampleOptions
-from painleve.asymptotics.theorem import Status
+from painleve.asymptotics.theorem import VerdictStatus
 from painleve.mechanics.derive import derive
 from painleve.mechanics.library import load_scene
 from painleve.plotting import draw, save_figure
@@ -161,6 +161,6 @@ def _misleading(row: dict[str, object]) -> bool:
 
 
 def _status(rows: list[dict[str, object]]) -> str:
-    counts = {status.value: sum(row["verdict"] == status.value for row in rows) for status in Status}
+    counts = {status.value: sum(row["verdict"] == status.value for row in rows) for status in VerdictStatus}
     said = ", ".join(f"{number} {label}" for label, number in counts.items() if number)
     return f"Theorem 1 at {len(rows)} states: {said}."

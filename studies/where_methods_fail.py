@@ -39,7 +39,7 @@ from painleve.sweep.rounding import sweep_rounding
 from painleve.sweep.sampled_bound import sweep_sampled_bound
 from painleve.sweep.text_table import text_table
 from painleve.sweep.variables import BRANCHES, code
-from painleve.sweep.work_precision import RUN_OUTCOMES, Effort, sweep_work_precision
+from painleve.sweep.work_precision import RUN_OUTCOMES, DistanceEffort, sweep_work_precision
 
 HARD = ("slender_rod", "double_zero")
 STATES = (
@@ -67,7 +67,7 @@ class Size:
     near_samples: int
     guide_eps: Sequence[float]
     states: Sequence[tuple[str, str]]
-    effort: Effort
+    effort: DistanceEffort
 
 
 FULL = Size(
@@ -80,7 +80,7 @@ FULL = Size(
     near_samples=200_000,
     guide_eps=(1e-3, 1e-9),
     states=STATES,
-    effort=Effort(
+    effort=DistanceEffort(
         samples=(10**4, 10**6), naive_samples=(10**5,), widths=(1e-1, PROOF), reference_width=1e-5, repetitions=1
     ),
 )
@@ -94,7 +94,9 @@ QUICK = Size(
     near_samples=20_000,
     guide_eps=(1e-3,),
     states=STATES[1:3],
-    effort=Effort(samples=(10**4,), naive_samples=(10**4,), widths=(PROOF,), reference_width=1e-4, repetitions=1),
+    effort=DistanceEffort(
+        samples=(10**4,), naive_samples=(10**4,), widths=(PROOF,), reference_width=1e-4, repetitions=1
+    ),
 )
 
 

@@ -8,7 +8,7 @@ import mpmath
 import numpy as np
 import sympy as sp
 
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.space.coulomb import COLUMNS, MOST_SOLUTIONS, coulomb_disc
 from painleve.mechanics.friction import Section
 from painleve.mechanics.scene import Coordinate, Scene, make_scene
@@ -53,7 +53,7 @@ class Numbers:
     def slips(self) -> np.ndarray:
         """(n, 3) impulses of the compiled solver's slips, sorted."""
         rows = self.solve()
-        slips = rows[rows[:, 0] == Branch.SLIP][:, 1:4]
+        slips = rows[rows[:, 0] == ContactMode.SLIP][:, 1:4]
         return slips[np.lexsort(slips.T)]
 
 

@@ -31,7 +31,7 @@ def block(*, frictional: bool = True) -> Scene:
     return make_scene(
         name="block" if frictional else "smooth_block",
         sentence="a point with coupled inertia above a floor",
-        source="the project's notes, section 6, minimal scene",
+        source="docs/theory.md, section 6, minimal scene",
         coordinates=[Coordinate(name=n, unit="m", sentence=n) for n in ("x", "y")],
         parameters=parameters,
         inertia=inverse.inv().applyfunc(sp.simplify),
@@ -115,7 +115,7 @@ def space_block(section: str) -> Scene:
     return make_scene(
         name=f"block_on_{section}",
         sentence="a point with coupled inertia above a floor",
-        source="the project's notes, section 6, minimal scene",
+        source="docs/theory.md, section 6, minimal scene",
         coordinates=[Coordinate(name=n, unit="m", sentence=n) for n in ("x", "y", "z")],
         parameters=parameters,
         inertia=inverse.inv().applyfunc(sp.simplify),

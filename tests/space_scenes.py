@@ -8,13 +8,13 @@ import mpmath
 import sympy as sp
 from reference_law import dot, to_mp
 
-from painleve.asymptotics.limit_set import LimitSet, limit_set
 from painleve.mechanics.friction import Polygon
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.library.slender_rod import MU
 from painleve.mechanics.library.spatial_rod import make_spatial_rod
 from painleve.mechanics.scene import NamedState, Scene
 from painleve.mechanics.state import State, make_state
+from painleve.theory.limit_set import LimitSet, limit_set
 
 CRITICAL = "atan(3 - sqrt(5))"  # with mu = 2 along the rod gamma = 0
 

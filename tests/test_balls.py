@@ -12,7 +12,7 @@ from flint import arb, fmpq
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from painleve.mechanics.balls import ball, make_ball_function
+from painleve.exact.balls import ball, make_ball_function
 
 X, Y = sympy.symbols("x y", real=True)
 NUMBERS = [sympy.Rational(1, 3), sympy.Integer(-2), sympy.Rational(7, 5), sympy.pi, sympy.sqrt(2), sympy.E]

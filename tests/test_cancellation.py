@@ -8,7 +8,6 @@ import pytest
 from planar_scenes import SCENE_NAMES
 from reference_law import DIGITS, Reference, dot, law, norm, to_mp
 
-from painleve.asymptotics.limit_set import LimitSet, limit_set
 from painleve.asymptotics.local import Arithmetic, LocalProblem, make_local_problem
 from painleve.asymptotics.member import make_member
 from painleve.asymptotics.optimise import OptimiseOptions, optimise_distance
@@ -17,6 +16,7 @@ from painleve.asymptotics.sample import SampleOptions, _Stream
 from painleve.core.sampling import BLOCK
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
+from painleve.theory.limit_set import LimitSet, limit_set
 
 EPS = 1e-12
 CORRECT = 1e-6  # relative

@@ -15,12 +15,12 @@ from scipy.optimize import minimize
 from painleve.asymptotics.certify.isolation import slips_nowhere
 from painleve.asymptotics.certify.method import CertifyOptions, certify_distance
 from painleve.asymptotics.certify.pieces import contact_pieces
-from painleve.asymptotics.limit_set import limit_set
 from painleve.asymptotics.local import make_local_problem
 from painleve.asymptotics.sample import SampleOptions, sample_distance
 from painleve.errors import InputError
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
+from painleve.theory.limit_set import limit_set
 
 NAMED = [
     (scene, state.name)

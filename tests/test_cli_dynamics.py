@@ -10,7 +10,7 @@ from planar_scenes import SCENE_NAMES
 
 import painleve.dynamics.fixed_step as fixed_step
 from painleve.cli import main
-from painleve.core.motion_codes import Outcome
+from painleve.core.motion_codes import MemberOutcome
 from painleve.dynamics.simulate import simulate
 from painleve.dynamics.start import Start
 from painleve.kernels.motion import make_motion
@@ -91,7 +91,7 @@ def test_ctrl_c_keeps_what_there_is_in_the_answer_and_in_the_file(capsys, monkey
 def test_ensemble_lists_every_outcome_and_the_fractions_add_up(capsys):
     words = ("ensemble", *STOSS, "--step", "1e-3", "--count", "200", "--window", "0.1", "--until", "0.9")
     answer = run_json(capsys, *words)
-    assert set(answer["fractions"]) == {o.label for o in Outcome if o is not Outcome.NOT_RUN}
+    assert set(answer["fractions"]) == {o.label for o in MemberOutcome if o is not MemberOutcome.NOT_RUN}
     assert sum(answer["fractions"].values()) == pytest.approx(1.0, abs=1e-15)
     assert answer["fractions"]["flight"] == 0
     assert 0.8 < answer["jump_time"]["min"] <= answer["jump_time"]["median"] <= answer["jump_time"]["max"] < 0.84

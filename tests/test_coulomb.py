@@ -16,14 +16,14 @@ from coulomb_contacts import (
 )
 
 import painleve
-from painleve.asymptotics.coulomb.one_step import CoulombSolutions, Enumeration, coulomb_solutions
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.law import planar_impulse
 from painleve.core.space.conic_law import disc_impulse
 from painleve.core.space.coulomb import COLUMNS, MOST_SOLUTIONS, coulomb_disc
 from painleve.errors import InputError
+from painleve.exact.signs import Sign
 from painleve.mechanics.friction import Disc, Ellipse, Polygon, Segment
-from painleve.mechanics.signs import Sign
+from painleve.theory.coulomb.one_step import CoulombSolutions, Enumeration, coulomb_solutions
 
 STEEP = [[10, -9, 0], [-9, 9, 0], [0, 0, 4]]  # gamma > 0 for mu = 1: a - |b| = 1
 AT_REST = (0, 0, 0)
@@ -74,10 +74,10 @@ def test_every_compiled_solution_satisfies_the_complementarity_conditions() -> N
             r, u = np.array(numbers[:3]), np.array(numbers[3:])
             scale = np.abs(contact.G).max() * max(1.0, np.abs(r).max()) + np.abs(contact.v).max()
             np.testing.assert_allclose(u, contact.v + contact.G @ r, rtol=0.0, atol=1e-9 * scale)
-            assert u[0] == (contact.v[0] if branch == Branch.FREE else 0.0)
-            if branch == Branch.STICK:
+            assert u[0] == (contact.v[0] if branch == ContactMode.FREE else 0.0)
+            if branch == ContactMode.STICK:
                 assert r[0] >= np.hypot(r[1], r[2])
-            if branch == Branch.SLIP:
+            if branch == ContactMode.SLIP:
                 assert np.hypot(r[1], r[2]) == pytest.approx(r[0], rel=1e-12)
                 assert r[1:] @ u[1:] == pytest.approx(-r[0] * np.hypot(u[1], u[2]), rel=1e-12)
 
@@ -93,7 +93,7 @@ def test_a_tiny_normal_compliance_is_not_lost(gap: float) -> None:
     """b along the slip and C diagonal: the planar slip with lambda = 1/(a - |b|), which cancellation would spoil."""
     found = np.empty((MOST_SOLUTIONS, COLUMNS))
     count = coulomb_disc(1.0 + gap, gap, -1.0, 0.0, 1.0, 0.0, 1.0, -1.0, -1e20, 0.0, found)
-    (slip,) = [row for row in found[:count] if row[0] == Branch.SLIP]
+    (slip,) = [row for row in found[:count] if row[0] == ContactMode.SLIP]
     assert slip[1] == pytest.approx(1.0 / gap, rel=1e-12)
 
 

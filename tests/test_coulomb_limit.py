@@ -10,17 +10,17 @@ import pytest
 import sympy as sp
 from coulomb_contacts import Numbers, random_numbers, scene_with
 
-from painleve.asymptotics.coulomb.limit import CoulombLimitSet, coulomb_limit_set
-from painleve.asymptotics.coulomb.one_step import coulomb_solutions
-from painleve.asymptotics.limit_set import limit_set
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.errors import InputError
+from painleve.exact.signs import Sign, exact_sign
 from painleve.mechanics.friction import Disc, Polygon, Segment
 from painleve.mechanics.library import SCENE_NAMES, load_scene
-from painleve.mechanics.signs import Sign, exact_sign
 from painleve.mechanics.state import State, make_state
+from painleve.sets import LineSegment as Line
 from painleve.sets import Points
-from painleve.sets import Segment as Line
+from painleve.theory.coulomb.limit import CoulombLimitSet, coulomb_limit_set
+from painleve.theory.coulomb.one_step import coulomb_solutions
+from painleve.theory.limit_set import limit_set
 
 STATES = [(scene, state.name) for scene in SCENE_NAMES for state in load_scene(scene).states]
 PLANAR = [(scene, state) for scene, state in STATES if load_scene(scene).friction_dimension < 2]
@@ -85,7 +85,7 @@ def test_generic_paradoxes_have_an_odd_number_of_jumps_exactly_where_friction_wo
         branches = tangent.solve()[:, 0].tolist()
         compliance = tangent.G[0, 0] - tangent.G[0, 1:] @ tangent.v[1:] / np.hypot(*tangent.v[1:])
         assert len(branches[1:]) % 2 == (compliance < 0.0)
-        seen.add((branches.count(Branch.STICK), branches.count(Branch.SLIP)))
+        seen.add((branches.count(ContactMode.STICK), branches.count(ContactMode.SLIP)))
     assert seen >= {(0, 0), (1, 0), (0, 1), (1, 1)}
 
 

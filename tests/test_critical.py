@@ -11,16 +11,16 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from painleve.asymptotics.critical import CriticalStates, Extremum, critical_states
-from painleve.asymptotics.theorem import Branch, classify
 from painleve.cli import main
 from painleve.errors import InputError
+from painleve.exact.signs import Sign, exact_sign
+from painleve.exact.zeros import ZeroStatus, find_zeros
 from painleve.mechanics.derive import derive
 from painleve.mechanics.library import load_scene
-from painleve.mechanics.neighbourhood import Neighbourhood
-from painleve.mechanics.signs import Sign, exact_sign
 from painleve.mechanics.state import make_state
-from painleve.mechanics.zeros import Found, find_zeros
+from painleve.theory.classification import Branch, classify
+from painleve.theory.critical import CriticalStates, Extremum, critical_states
+from painleve.theory.neighbourhood import Neighbourhood
 
 APPROACHED, ISOLATED, UNDECIDED = Neighbourhood.APPROACHED, Neighbourhood.ISOLATED, Neighbourhood.UNDECIDED
 ROD, WORN, ARM, ELLIPSE, BODY, MINIMAL = (
@@ -47,7 +47,7 @@ def test_all_zeros_of_a_polynomial_are_found_exactly_with_their_multiplicities(r
     polynomial = sp.expand(sp.Mul(*((s - sp.Rational(r)) for r in roots)) * (s**2 + 1))
     found = find_zeros(polynomial, s, sp.Integer(-3), sp.Integer(3)).zeros
     expected = [(sp.Rational(r), roots.count(r)) for r in sorted(set(roots)) if roots.count(r) <= 4]
-    assert [(z.place, z.multiplicity) for z in found if z.status is Found.EXACT] == expected
+    assert [(z.place, z.multiplicity) for z in found if z.status is ZeroStatus.EXACT] == expected
     assert len(found) == len(set(roots))
 
 
@@ -75,18 +75,18 @@ def test_the_zeros_of_a_trigonometric_polynomial_are_those_of_a_fine_scan(c, k):
 
 def test_a_transcendental_zero_is_enclosed_and_a_double_one_without_closed_form_is_left_undecided():
     (zero,) = find_zeros(sp.cos(s) - s, s, sp.Integer(0), sp.Integer(1)).zeros
-    assert zero.status is Found.ENCLOSED
+    assert zero.status is ZeroStatus.ENCLOSED
     with mpmath.workdps(40):
         assert abs(float(zero.enclosure.mid()) - mpmath.findroot(lambda x: mpmath.cos(x) - x, 0.7)) < 1e-16
     assert zero.enclosure.rad() < 1e-20
     (zero,) = find_zeros((sp.cos(s) - s) ** 2, s, sp.Integer(0), sp.Integer(1)).zeros
-    assert zero.status is Found.UNDECIDED
+    assert zero.status is ZeroStatus.UNDECIDED
     assert zero.enclosure.contains(find_zeros(sp.cos(s) - s, s, sp.Integer(0), sp.Integer(1)).zeros[0].enclosure)
 
 
 def test_a_function_too_large_for_a_closed_form_is_searched_all_the_same():
     (zero,) = find_zeros(s**301 - 2, s, sp.Integer(0), sp.Integer(2)).zeros
-    assert (zero.status, zero.multiplicity) == (Found.ENCLOSED, 1)
+    assert (zero.status, zero.multiplicity) == (ZeroStatus.ENCLOSED, 1)
     assert abs(float(zero.enclosure.mid()) - 2 ** (1 / 301)) < 1e-15
 
 
@@ -115,7 +115,7 @@ def test_the_rod_s_band_edges_and_least_critical_friction_are_the_published_ones
     found = critical_states(ROD, "theta", parameters={"mu": mu})
     value = sp.sympify(mu)
     edges = [(3 * value + sign * sp.sqrt(9 * value**2 - 16)) / 2 for sign in (-1, 1)]
-    assert [x.status for x in found.zeros] == [Found.EXACT] * 2
+    assert [x.status for x in found.zeros] == [ZeroStatus.EXACT] * 2
     for x, edge in zip(found.zeros, edges, strict=True):
         assert same(sp.tan(x.place), edge)
         assert x.kind is APPROACHED
@@ -132,7 +132,7 @@ def test_the_rod_s_band_edges_and_least_critical_friction_are_the_published_ones
 
 def test_at_the_least_friction_the_two_edges_are_one_double_zero_and_below_it_there_is_none():
     (zero,) = critical_states(ROD, "theta", parameters={"mu": "4/3"}).zeros
-    assert (zero.place, zero.status, zero.kind) == (sp.atan(2), Found.EXACT, APPROACHED)
+    assert (zero.place, zero.status, zero.kind) == (sp.atan(2), ZeroStatus.EXACT, APPROACHED)
     below = critical_states(ROD, "theta", parameters={"mu": "4/3 - 1e-9"})
     assert below.zeros == ()
     assert below.unresolved == ()
@@ -200,7 +200,7 @@ def test_the_kind_by_enclosures_alone_agrees_with_exact_arithmetic():
     """The same heavy core with a transcendental number in it: its extrema have no closed form."""
     core = {"B": "sqrt(2)/2", "I": "3/100 + exp(-30)"}
     found = critical_states(ELLIPSE, "theta", parameters=core)
-    assert [x.status for x in found.extrema] == [Found.ENCLOSED] * 3
+    assert [x.status for x in found.extrema] == [ZeroStatus.ENCLOSED] * 3
     assert [x.kind for x in found.extrema] == [APPROACHED, ISOLATED, APPROACHED]
     assert abs(float(found.extrema[1].enclosure.mid()) - mpmath.pi / 6) < 1e-9
 
@@ -222,7 +222,7 @@ def test_the_arm_along_the_table_has_the_maximum_of_the_notes_and_it_is_isolated
     found = critical_states(ARM, "phi1", low="-1/4", high="0")
     (maximum,) = [x for x in found.extrema if x.extremum is Extremum.MAXIMUM]
     phi1 = float(maximum.enclosure.mid())
-    assert (maximum.status, maximum.kind) == (Found.ENCLOSED, ISOLATED)
+    assert (maximum.status, maximum.kind) == (ZeroStatus.ENCLOSED, ISOLATED)
     assert f"{phi1:.3f}" == "-0.163"
     assert f"{float(mpmath.acos(1.95 - mpmath.cos(phi1))):.3f}" == "0.272"
     assert f"{float(maximum.friction_enclosure.mid()):.4f}" == "0.5964"
@@ -248,7 +248,7 @@ def test_an_exact_critical_state_of_the_arm_is_found_by_its_closed_form_along_it
     given = dict(named.parameters) | {"depth": "143/145 + 24/25"}
     found = critical_states(ARM, "phi1", low="-1/5", high="-1/8", parameters=given)
     (maximum,) = found.extrema
-    assert (maximum.status, maximum.kind, maximum.extremum) == (Found.EXACT, ISOLATED, Extremum.MAXIMUM)
+    assert (maximum.status, maximum.kind, maximum.extremum) == (ZeroStatus.EXACT, ISOLATED, Extremum.MAXIMUM)
     assert same(sp.tan(maximum.place / 2), sp.Rational(-1, 12))
     assert same(maximum.friction, sp.sympify(named.parameters["mu"]))
     (zero,) = found.zeros
@@ -259,7 +259,7 @@ def test_where_the_depth_goes_with_the_arm_nothing_is_claimed_of_states_that_are
     found = critical_states(ARM, "phi1", low="-1/2", high="-1/10", keys={"phi2": "1/4"}, parameters={"mu": "3/5"})
     assert found.changing == ("depth",)
     assert found.zeros
-    assert {x.kind for x in (*found.zeros, *found.extrema) if x.status is Found.ENCLOSED} <= {UNDECIDED}
+    assert {x.kind for x in (*found.zeros, *found.extrema) if x.status is ZeroStatus.ENCLOSED} <= {UNDECIDED}
 
 
 # --- wrong questions, and the command --------------------------------------------------------------------------------

@@ -6,11 +6,11 @@ import pytest
 import sympy as sp
 from sympy.physics.mechanics import LagrangesMethod, dynamicsymbols
 
+from painleve.exact.signs import Sign, exact_sign
 from painleve.mechanics.derive import derive
 from painleve.mechanics.friction import Segment
 from painleve.mechanics.library import SCENE_NAMES, load_scene
 from painleve.mechanics.scene import Coordinate, Parameter, Scene, make_scene
-from painleve.mechanics.signs import Sign, exact_sign
 
 ROD, WORN, ARM = (load_scene(name) for name in ("slender_rod", "worn_tip_rod", "two_link_arm"))
 x, y, theta = ROD.q

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from painleve.core.motion_codes import Change, Ending, Outcome
+from painleve.core.motion_codes import Change, Ending, MemberOutcome
 from painleve.dynamics.ensemble import _Task, run_ensemble
 from painleve.dynamics.schemes import load_scheme
 from painleve.dynamics.simulate import simulate
@@ -41,8 +41,8 @@ def test_the_fraction_of_step_sizes_that_jam_glockers_rod_is_the_measured_one(
     h: float, count: int, published: float, error: float
 ) -> None:
     found = run_ensemble(STOSS, step=h, count=count, until=1.0, window=0.1, seed=2)
-    jams = found.fraction(Outcome.JUMP) + found.fraction(Outcome.STICK)
-    assert jams + found.fraction(Outcome.LIFT_OFF) == pytest.approx(1.0, abs=1e-12)
+    jams = found.fraction(MemberOutcome.JUMP) + found.fraction(MemberOutcome.STICK)
+    assert jams + found.fraction(MemberOutcome.LIFT_OFF) == pytest.approx(1.0, abs=1e-12)
     # two independent samples of the same probability: four standard deviations of their difference
     assert abs(jams - published) < 4 * math.hypot(error / 2, math.sqrt(0.25 / count))
     assert found.jump_time is not None
@@ -56,21 +56,21 @@ def test_a_member_does_what_its_trajectory_does(scheme: str) -> None:
     for h, outcome, time in zip(found.members.step, found.members.outcome, found.members.time, strict=True):
         path = simulate(STOSS, scheme=scheme, step=float(h), until=1.1, monitor=False)
         jumps = [j for j in path.jumps if j.kind is Change.JUMP_WITHOUT_COLLISION]
-        assert (outcome == Outcome.JUMP) == bool(jumps)
+        assert (outcome == MemberOutcome.JUMP) == bool(jumps)
         if jumps:
             assert jumps[0].time == pytest.approx(time, rel=1e-12)
         else:
-            assert outcome == Outcome.LIFT_OFF
+            assert outcome == MemberOutcome.LIFT_OFF
             assert path.to_xarray().g.values[path.t >= time].max() < 0.0
-    assert set(found.members.outcome) == {Outcome.JUMP, Outcome.LIFT_OFF}
+    assert set(found.members.outcome) == {MemberOutcome.JUMP, MemberOutcome.LIFT_OFF}
 
 
 def test_fractions_and_times_are_those_of_the_members() -> None:
     found = run_ensemble(STOSS, step=5e-4, count=3000, until=1.0, spread=0.5, seed=1, keep=True)
     members = found.members
     assert members is not None
-    jumps = members.time[members.outcome == Outcome.JUMP]
-    assert found.fraction(Outcome.JUMP) == len(jumps) / 3000
+    jumps = members.time[members.outcome == MemberOutcome.JUMP]
+    assert found.fraction(MemberOutcome.JUMP) == len(jumps) / 3000
     least, median, greatest = found.jump_time
     assert (least, greatest) == (jumps.min(), jumps.max())
     assert abs(median - np.median(jumps)) < 2 * found.resolution
@@ -106,18 +106,18 @@ def test_initial_states_fill_the_two_balls() -> None:
 
 def test_the_paradox_jumps_at_every_step_size_and_sliding_at_none() -> None:
     always = run_ensemble(PARADOX, step=1e-5, count=500, until=1e-2, spread=2)
-    assert always.fraction(Outcome.JUMP) == 1.0
-    assert always.interval(Outcome.JUMP)[0] > 0.99
+    assert always.fraction(MemberOutcome.JUMP) == 1.0
+    assert always.interval(MemberOutcome.JUMP)[0] > 0.99
     state = make_state(ROD, keys={"theta": "pi/3", "slip": -3, "omega": 1}, parameters={"mu": "3/10"})
     never = run_ensemble(state, step=1e-5, count=500, until=1e-2, spread=2)
-    assert never.fraction(Outcome.SLIDE) == 1.0
+    assert never.fraction(MemberOutcome.SLIDE) == 1.0
     assert never.jump_time is None
 
 
 def test_wilsons_interval_is_the_root_of_its_equation() -> None:
     found = run_ensemble(STOSS, step=1e-3, count=200, until=1.0, window=0.1)
-    p, n = found.fraction(Outcome.JUMP), 200
-    for bound in found.interval(Outcome.JUMP):
+    p, n = found.fraction(MemberOutcome.JUMP), 200
+    for bound in found.interval(MemberOutcome.JUMP):
         assert abs(p - bound) == pytest.approx(1.959963984540054 * math.sqrt(bound * (1 - bound) / n), rel=1e-12)
 
 
@@ -133,7 +133,7 @@ def test_control_c_ends_an_ensemble_with_what_there_is() -> None:
     assert found.ending is Ending.INTERRUPTED
     assert found.count == sum(done) < 5000
     assert found.members is not None
-    assert (found.members.outcome == Outcome.NOT_RUN).sum() == 5000 - found.count
+    assert (found.members.outcome == MemberOutcome.NOT_RUN).sum() == 5000 - found.count
 
 
 BAD = [

@@ -10,7 +10,7 @@ import pytest
 from dynamics_scenes import block
 from scipy.integrate import solve_ivp
 
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Change, Ending
 from painleve.dynamics.modes import ContactPoint, closed_modes
 from painleve.dynamics.simulate import simulate
@@ -52,14 +52,14 @@ def test_the_slip_of_the_event_driven_method_is_the_reduced_equation_of_the_rod(
 @pytest.mark.parametrize(
     ("omega", "mu", "gamma_sign", "beta_sign", "modes"),
     [
-        (0, "1/2", 1, -1, {Branch.SLIP_PLUS}),
-        (5, "1/2", 1, 1, {Branch.FREE}),
+        (0, "1/2", 1, -1, {ContactMode.SLIP_PLUS}),
+        (5, "1/2", 1, 1, {ContactMode.FREE}),
         (0, "2", -1, -1, set()),
-        (5, "2", -1, 1, {Branch.FREE, Branch.SLIP_PLUS}),
+        (5, "2", -1, 1, {ContactMode.FREE, ContactMode.SLIP_PLUS}),
     ],
 )
 def test_slip_has_the_four_published_regimes(
-    omega: int, mu: str, gamma_sign: int, beta_sign: int, modes: set[Branch]
+    omega: int, mu: str, gamma_sign: int, beta_sign: int, modes: set[ContactMode]
 ) -> None:
     start = as_start(make_state(ROD, keys={"theta": "atan(2)", "omega": omega}, parameters={"mu": mu}))
     point = ContactPoint.at(start, 0.0, np.array(start.q), np.array(start.u))
@@ -101,7 +101,7 @@ def test_a_tip_at_rest_has_every_mode_that_solves_newtons_law() -> None:
             assert abs(tangential) <= parameters["mu"] * normal + 1e-9
             assert (
                 abs(a_t) < 1e-9
-                or mode is Branch.FREE
+                or mode is ContactMode.FREE
                 or tangential * a_t == pytest.approx(-parameters["mu"] * normal * abs(a_t), rel=1e-9)
             )
         assert len(modes) == solutions_by_friction_ratio(point, parameters["mu"])
@@ -162,7 +162,7 @@ def test_a_slip_on_a_curved_constraint_ends_in_sticking_at_every_tolerance(expon
     found = simulate(state, scheme="event_driven", step=0.1, until=0.6, options=options)
     tight = simulate(state, scheme="event_driven", step=0.1, until=0.6, options={"rtol": 1e-13, "atol": 1e-15})
     assert found.ending is Ending.REACHED_END
-    assert set(found.branch[1:]) == {Branch.SLIP_PLUS, Branch.STICK}
+    assert set(found.branch[1:]) == {ContactMode.SLIP_PLUS, ContactMode.STICK}
     assert np.abs(found.q[-1] - tight.q[-1]).max() < 100 * rtol
     assert np.abs(found.u[-1]).max() < 1e-12
 
@@ -232,7 +232,7 @@ def test_the_jump_of_glockers_rod_has_no_collision_and_does_not_shrink_with_the_
                 w = np.array([0.0, 1.0, -math.cos(found.q[jump.index, 2])])
                 sizes.append(np.linalg.norm(jump.u_plus - jump.u_minus))
                 approaches.append(abs(w @ jump.u_minus))
-                assert found.branch[jump.index] == Branch.STICK
+                assert found.branch[jump.index] == ContactMode.STICK
                 assert found.jumps[0] is jump
                 break
     assert len(sizes) == len(steps)

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from painleve.core import steps
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Change, Ending
 from painleve.dynamics.proposition1 import check_proposition1
 from painleve.dynamics.schemes import SCHEME_NAMES, load_scheme
@@ -55,7 +55,7 @@ def test_every_step_is_that_of_the_paper_worked_out_slowly(frictional: bool) -> 
             expected = slow.step(found.t[i], length, found.q[i], found.u[i])
             np.testing.assert_allclose(found.q[i + 1], expected[0], rtol=1e-14, atol=1e-14)
             np.testing.assert_allclose(found.u[i + 1], expected[1], rtol=1e-9, atol=1e-11)
-        contacts += int((found.branch != Branch.FREE).sum())
+        contacts += int((found.branch != ContactMode.FREE).sum())
     assert contacts > 200
 
 
@@ -71,7 +71,7 @@ def test_proposition_1_holds_at_every_step_of_random_scenes(frictional: bool) ->
             values = getattr(found.proposition1, margin)
             assert values.shape == (500,)
             assert found.proposition1.worst(margin)[0] == values.max() <= 1e-13
-        signs |= {bool(s) for s in found.contact_quantities()["gamma"][found.branch != Branch.FREE] < 0.0}
+        signs |= {bool(s) for s in found.contact_quantities()["gamma"][found.branch != ContactMode.FREE] < 0.0}
     assert signs == ({True, False} if frictional else {False})
 
 
@@ -95,7 +95,7 @@ def test_free_fall_is_the_sum_of_an_arithmetic_series() -> None:
     np.testing.assert_allclose(
         found.q, np.array([0, 9, 1]) + np.outer(i * h, [1, 2, 3]) + np.outer(fall, [0, 1, 0]), rtol=1e-13
     )
-    assert (found.branch == Branch.FREE).all()
+    assert (found.branch == ContactMode.FREE).all()
     assert not found.r.any()
     assert found.steps == n
 
@@ -263,7 +263,7 @@ def test_steps_whose_problem_has_several_solutions_are_counted(scheme: str) -> N
     tests_contact = load_scheme(scheme).tests_contact
     found = simulate(lifting, scheme=scheme, step=1e-3, until=1e-3, contact_tolerance=1e-4 if tests_contact else 0.0)
     assert found.statistics["steps_with_several_solutions"] == 1
-    assert found.branch[1] == Branch.FREE
+    assert found.branch[1] == ContactMode.FREE
     sliding = simulate(make_state(ROD, "sliding"), scheme=scheme, step=1e-3, until=0.1)
     assert sliding.statistics["steps_with_several_solutions"] == 0
 
@@ -280,7 +280,9 @@ def test_the_record_says_what_the_formulas_say() -> None:
     np.testing.assert_allclose(table.kinetic_energy, (found.u**2 @ [1, 1, 1 / 3]) / 2, rtol=1e-13)
     assert all(v.attrs["long_name"] for v in table.data_vars.values())
     assert table.u_theta.attrs["units"] == "rad/s"
-    assert table.branch.attrs["flag_meanings"].split()[int(table.branch[20])] == Branch(int(found.branch[20])).label
+    assert (
+        table.branch.attrs["flag_meanings"].split()[int(table.branch[20])] == ContactMode(int(found.branch[20])).label
+    )
 
 
 def test_a_stored_jump_is_the_impulse_of_its_step() -> None:
@@ -347,38 +349,38 @@ def test_every_listed_scheme_says_where_it_comes_from() -> None:
         assert len(scheme.source) > 20
 
 
-def implicit_steps(q: np.ndarray, u: np.ndarray, h: float) -> list[tuple[Branch, np.ndarray]]:
+def implicit_steps(q: np.ndarray, u: np.ndarray, h: float) -> list[tuple[ContactMode, np.ndarray]]:
     """Every (branch, u1) of the position-level step of Glocker's rod, m = l = 1, I = 1/3, mu = 5/3, gravity 10.
 
     Each branch leaves one unknown, the new angle; roots of g(q1) = 0 are sought on a fine grid of it.
     """
     v, inverse, mu = u - [0.0, 10.0 * h, 0.0], np.array([1.0, 1.0, 3.0]), 5 / 3
 
-    def step(angle: float, branch: Branch) -> tuple[np.ndarray, float, float]:
+    def step(angle: float, branch: ContactMode) -> tuple[np.ndarray, float, float]:
         turn = (angle - q[2]) / h - v[2]
         normal, tangent = inverse * [0.0, 1.0, -math.cos(angle)], inverse * [1.0, 0.0, math.sin(angle)]
-        if branch is Branch.STICK:
+        if branch is ContactMode.STICK:
             H = tangent / inverse
             A = [[H @ normal, H @ tangent], [normal[2], tangent[2]]]
             r_n, r_t = np.linalg.solve(A, [-H @ v, turn])
         else:
-            s = mu if branch is Branch.SLIP_PLUS else -mu
+            s = mu if branch is ContactMode.SLIP_PLUS else -mu
             r_n = turn / (normal[2] + s * tangent[2])
             r_t = s * r_n
         return v + normal * r_n + tangent * r_t, r_n, r_t
 
-    def gap(angle: float, branch: Branch) -> float:
+    def gap(angle: float, branch: ContactMode) -> float:
         return float(math.sin(angle) - q[1] - h * step(angle, branch)[0][1])
 
-    found = [(Branch.FREE, v)] if math.sin(q[2] + h * v[2]) <= q[1] + h * v[1] else []
-    for branch in (Branch.STICK, Branch.SLIP_PLUS, Branch.SLIP_MINUS):
+    found = [(ContactMode.FREE, v)] if math.sin(q[2] + h * v[2]) <= q[1] + h * v[1] else []
+    for branch in (ContactMode.STICK, ContactMode.SLIP_PLUS, ContactMode.SLIP_MINUS):
         angles = q[2] + h * np.linspace(-60.0, 60.0, 4001)
         signs = np.sign([gap(angle, branch) for angle in angles])
         for i in np.flatnonzero(signs[1:] != signs[:-1]):
             root = brentq(gap, angles[i], angles[i + 1], args=(branch,), xtol=1e-16)
             u1, r_n, r_t = step(root, branch)
             slip = u1[0] + math.sin(root) * u1[2]
-            if r_n > 0.0 and abs(r_t) <= mu * r_n * (1 + 1e-12) and (branch is Branch.STICK or slip * r_t < 0.0):
+            if r_n > 0.0 and abs(r_t) <= mu * r_n * (1 + 1e-12) and (branch is ContactMode.STICK or slip * r_t < 0.0):
                 found.append((branch, u1))
     return found
 
@@ -391,7 +393,7 @@ def test_the_position_level_scheme_finds_the_one_solution_of_its_step_close_to_t
     for t in (0.80, 0.8133):  # rounding of g is worth 1/p times more velocity there: p is about 0.03
         i = int(np.searchsorted(found.t, t))
         ((branch, u1),) = implicit_steps(found.q[i], found.u[i], h)
-        assert found.branch[i + 1] == branch == Branch.SLIP_PLUS
+        assert found.branch[i + 1] == branch == ContactMode.SLIP_PLUS
         np.testing.assert_allclose(found.u[i + 1], u1, rtol=0.0, atol=1e-8)
 
 
@@ -400,6 +402,10 @@ def test_where_the_step_of_the_position_level_scheme_has_several_solutions_the_t
         make_state(load_scene("slender_rod"), "stoss"), scheme="schatzman_paoli", step=1e-3, until=0.83, monitor=False
     )
     i = int(np.searchsorted(found.t, 0.8155))
-    assert {b for b, _ in implicit_steps(found.q[i], found.u[i], 1e-3)} == {Branch.FREE, Branch.STICK, Branch.SLIP_PLUS}
-    assert found.branch[i + 1] == Branch.FREE
+    assert {b for b, _ in implicit_steps(found.q[i], found.u[i], 1e-3)} == {
+        ContactMode.FREE,
+        ContactMode.STICK,
+        ContactMode.SLIP_PLUS,
+    }
+    assert found.branch[i + 1] == ContactMode.FREE
     assert found.statistics["steps_with_several_solutions"] > 0

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from scipy.spatial.distance import cdist, directed_hausdorff
 
 from painleve.errors import InputError
-from painleve.sets import Cloud, Points, Segment, excess, excess_of_segment_from_profile, hausdorff
+from painleve.sets import Cloud, LineSegment, Points, excess, excess_of_segment_from_profile, hausdorff
 
 ULP = sys.float_info.epsilon
 
@@ -33,7 +33,7 @@ def members(d, max_size=8):
 
 
 def segments(d):
-    return st.builds(Segment, vectors(d), vectors(d))
+    return st.builds(LineSegment, vectors(d), vectors(d))
 
 
 def shapes(d):
@@ -136,7 +136,7 @@ def test_a_point_off_its_own_place_can_be_nearest_elsewhere():
 @pytest.mark.parametrize("scale", [1e-12, 1e-6, 1.0])
 def test_distances_to_a_segment_are_good_to_a_few_ulps_of_the_distance_to_its_nearer_end(scale):
     rng = np.random.default_rng(2)
-    segment = Segment([-1.0, 0.25, 0.0], [-0.4, 1.05, 0.1])
+    segment = LineSegment([-1.0, 0.25, 0.0], [-0.4, 1.05, 0.1])
     for _ in range(200):
         end = segment.start if rng.random() < 0.5 else segment.end
         x = end + scale * rng.normal(size=3)
@@ -149,7 +149,7 @@ def test_distances_to_a_segment_are_good_to_a_few_ulps_of_the_distance_to_its_ne
 @pytest.mark.parametrize("scale", [1e-12, 1e-6, 1.0])
 def test_the_excess_of_a_segment_from_points_agrees_with_fifty_digits(scale):
     rng = np.random.default_rng(3)
-    segment = Segment([-1.0, 0.25, 0.0], [-0.4, 1.05, 0.0])
+    segment = LineSegment([-1.0, 0.25, 0.0], [-0.4, 1.05, 0.0])
     for _ in range(20):
         places = rng.choice([0.0, 0.3, 1.0], size=12)
         y = segment.start + places[:, None] * (segment.end - segment.start) + scale * rng.normal(size=(12, 3))
@@ -161,7 +161,7 @@ def test_the_excess_of_a_segment_from_points_agrees_with_fifty_digits(scale):
 
 def test_a_cloud_against_a_segment_agrees_with_a_plain_projection_of_every_member():
     rng = np.random.default_rng(4)
-    x, segment = rng.normal(size=(50_000, 3)), Segment([-1.0, 0.0, 0.5], [1.0, 0.3, 0.2])
+    x, segment = rng.normal(size=(50_000, 3)), LineSegment([-1.0, 0.0, 0.5], [1.0, 0.3, 0.2])
     along = segment.end - segment.start
     share = np.clip((x - segment.start) @ along / (along @ along), 0.0, 1.0)
     distances = np.linalg.norm(x - segment.start - share[:, None] * along, axis=1)
@@ -194,7 +194,7 @@ def test_the_excess_between_segments_is_that_of_a_fine_grid_up_to_its_radius(X, 
 @quick
 @given(vectors(3), shapes(3))
 def test_a_degenerate_segment_measures_as_the_point_that_it_is(point, other):
-    as_segment, as_points = hausdorff(Segment(point, point), other), hausdorff(Points([point]), other)
+    as_segment, as_points = hausdorff(LineSegment(point, point), other), hausdorff(Points([point]), other)
     assert value(as_segment.forward.bounds) == pytest.approx(value(as_points.forward.bounds), rel=8 * ULP)
     assert value(as_segment.backward.bounds) == pytest.approx(value(as_points.backward.bounds), rel=8 * ULP)
 
@@ -212,7 +212,7 @@ def test_the_excess_is_the_distance_between_the_points_that_are_reported(X, Y):
 def test_an_excess_attained_at_an_end_reports_that_very_end():
     rng = np.random.default_rng(7)
     for d in (1, 2, 3, 6):
-        segment = Segment(rng.normal(size=d), rng.normal(size=d))
+        segment = LineSegment(rng.normal(size=d), rng.normal(size=d))
         away = segment.end - segment.start
         for near, far in ((segment.start - away, segment.end), (segment.end + away, segment.start)):
             assert np.array_equal(excess(segment, Points([near])).attained_at, far)
@@ -222,7 +222,7 @@ def test_an_excess_attained_at_an_end_reports_that_very_end():
 def test_the_pair_of_ends_is_half_a_length_from_its_segment():
     """The value to which the paper's isolated critical case tends."""
     start, end = [-1.0, 0.0], [0.0, 0.0]
-    both = hausdorff(Segment(start, end), Points([start, end]))
+    both = hausdorff(LineSegment(start, end), Points([start, end]))
     assert value(both.bounds) == value(both.forward.bounds) == 0.5
     assert value(both.backward.bounds) == 0.0
     assert np.array_equal(both.forward.attained_at, [-0.5, 0.0])
@@ -253,8 +253,8 @@ def test_excesses_do_not_change_under_rotation_and_translation(X, Y, seed):
     rotation, shift = np.linalg.qr(rng.normal(size=(3, 3)))[0], rng.uniform(-8.0, 8.0, 3)
 
     def moved(shape):
-        if isinstance(shape, Segment):
-            return Segment(shape.start @ rotation.T + shift, shape.end @ rotation.T + shift)
+        if isinstance(shape, LineSegment):
+            return LineSegment(shape.start @ rotation.T + shift, shape.end @ rotation.T + shift)
         return Points(shape.members @ rotation.T + shift)
 
     # coordinates below 24 move by a few of their ulps, and so does every distance (1-Lipschitz)
@@ -280,7 +280,7 @@ def test_more_members_only_sharpen_the_one_sided_bounds(some, more, exact):
 # --- sides, and what is refused ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("exact", [Points([[0.0, 0.0]]), Segment([0.0, 0.0], [1.0, 0.0])])
+@pytest.mark.parametrize("exact", [Points([[0.0, 0.0]]), LineSegment([0.0, 0.0], [1.0, 0.0])])
 def test_a_cloud_bounds_the_excess_of_its_set_from_below_and_the_excess_from_it_from_above(exact):
     cloud = Cloud([[0.0, 3.0], [2.0, 0.5]])
     both = hausdorff(cloud, exact)
@@ -293,7 +293,7 @@ def test_the_one_sided_bounds_hold_for_the_set_that_the_cloud_was_drawn_from():
     rng = np.random.default_rng(6)
     angle, radius = rng.uniform(0.0, 2.0 * np.pi, 1000), np.sqrt(rng.random(1000))
     disc = Cloud(radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1))
-    both = hausdorff(disc, Segment([-2.0, 0.0], [2.0, 0.0]))
+    both = hausdorff(disc, LineSegment([-2.0, 0.0], [2.0, 0.0]))
     assert 0.9 < both.forward.bounds.lower < 1.0 < both.backward.bounds.upper < 1.1
 
 
@@ -304,7 +304,7 @@ def test_from_one_cloud_to_another_nothing_is_bounded_and_the_points_are_still_t
 
 
 def test_measuring_a_cloud_from_a_segment_takes_no_memory_that_grows_with_the_cloud():
-    cloud, segment = Cloud(np.zeros((400_000, 3))), Segment([0.0, 0.0, 0.0], [1.0, 0.0, 0.0])
+    cloud, segment = Cloud(np.zeros((400_000, 3))), LineSegment([0.0, 0.0, 0.0], [1.0, 0.0, 0.0])
     tracemalloc.start()
     excess(cloud, segment)
     _, peak = tracemalloc.get_traced_memory()
@@ -317,7 +317,7 @@ def test_shapes_neither_follow_nor_allow_later_changes_of_their_arrays():
     points = Points(source)
     source[:] = 7.0
     assert np.array_equal(points.members, np.zeros((2, 2)))
-    for array in (points.members, Segment([0.0], [1.0]).end, excess(points, points).nearest):
+    for array in (points.members, LineSegment([0.0], [1.0]).end, excess(points, points).nearest):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 1.0
 
@@ -333,10 +333,10 @@ def test_shapes_neither_follow_nor_allow_later_changes_of_their_arrays():
         lambda: Points([[1.0], [1.0, 2.0]]),
         lambda: Points([[1.0j]]),
         lambda: Points([["one"]]),
-        lambda: Segment([0.0, 0.0], [1.0]),
-        lambda: Segment([[0.0]], [[1.0]]),
-        lambda: Segment([math.nan], [1.0]),
-        lambda: excess(Points([[0.0]]), Segment([0.0, 0.0], [1.0, 0.0])),
+        lambda: LineSegment([0.0, 0.0], [1.0]),
+        lambda: LineSegment([[0.0]], [[1.0]]),
+        lambda: LineSegment([math.nan], [1.0]),
+        lambda: excess(Points([[0.0]]), LineSegment([0.0, 0.0], [1.0, 0.0])),
         lambda: excess_of_segment_from_profile([], [], 1.0),
         lambda: excess_of_segment_from_profile([0.0, 1.0], [0.0], 1.0),
         lambda: excess_of_segment_from_profile([0.0], [-1.0], 1.0),

@@ -16,22 +16,27 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from painleve import InputError, check_hypotheses, load_scene, make_scene, make_state
-from painleve.asymptotics.hypotheses import Applicability, HypothesesCheck
-from painleve.asymptotics.theorem import Branch, classify
 from painleve.cli import main
 from painleve.mechanics.friction import Disc, Ellipse, Polygon, Section, Segment
-from painleve.mechanics.hypotheses.claims import Claim, Kind, Status, decide
-from painleve.mechanics.hypotheses.region import Region
-from painleve.mechanics.hypotheses.simplest import simplest_fraction
 from painleve.mechanics.library import SCENE_NAMES
 from painleve.mechanics.scene import Coordinate, Scene
 from painleve.mechanics.state import State
+from painleve.theory.classification import Branch, classify
+from painleve.theory.hypotheses.check import Applicability, HypothesesCheck
+from painleve.theory.hypotheses.claims import Claim, ClaimKind, ClaimStatus, decide
+from painleve.theory.hypotheses.region import Region
+from painleve.theory.hypotheses.simplest import simplest_fraction
 
 PLANE = tuple(Coordinate(name=name, unit="m", sentence=name) for name in ("x", "y"))
 SPACE = (*PLANE, Coordinate(name="z", unit="m", sentence="z"))
 X, Y, Z = (c.symbol for c in SPACE)
 HALF = sp.Rational(1, 2)
-PROVED, REFUTED, SUPPORTED, UNDECIDED = Status.PROVED, Status.REFUTED, Status.SUPPORTED, Status.UNDECIDED
+PROVED, REFUTED, SUPPORTED, UNDECIDED = (
+    ClaimStatus.PROVED,
+    ClaimStatus.REFUTED,
+    ClaimStatus.SUPPORTED,
+    ClaimStatus.UNDECIDED,
+)
 
 
 def plane(
@@ -75,7 +80,7 @@ def space(friction: Section) -> State:
     return make_state(scene, keys=dict.fromkeys(("x", "y", "z", "u_x", "u_y", "u_z"), 0))
 
 
-def statuses(found: HypothesesCheck) -> dict[str, Status]:
+def statuses(found: HypothesesCheck) -> dict[str, ClaimStatus]:
     return {h.name: h.status for h in found.hypotheses}
 
 
@@ -396,7 +401,7 @@ GRID = np.linspace(-1, 1, 41)
 
 @pytest.mark.slow
 @settings(max_examples=60)
-@given(POLYNOMIALS, st.sampled_from(list(Kind)), st.booleans())
+@given(POLYNOMIALS, st.sampled_from(list(ClaimKind)), st.booleans())
 def test_claims_about_polynomials_agree_with_a_fine_grid(p, kind, squared):
     expression = p**2 if squared else p
     region = Region(state=plane(), radius=Fraction(1))
@@ -405,15 +410,23 @@ def test_claims_about_polynomials_agree_with_a_fine_grid(p, kind, squared):
     inside = [(x, y) for x, y in itertools.product(GRID, GRID) if x * x + y * y <= 1]
     values = np.array([float(value(x, y)) for x, y in inside])
     if found.status is PROVED:
-        holds = {Kind.POSITIVE: values > 0, Kind.NONNEGATIVE: values >= -1e-12, Kind.NONZERO: values != 0}[kind]
+        holds = {
+            ClaimKind.POSITIVE: values > 0,
+            ClaimKind.NONNEGATIVE: values >= -1e-12,
+            ClaimKind.NONZERO: values != 0,
+        }[kind]
         assert holds.all()
         if found.bound > 0:
             assert np.abs(values).min() >= found.bound * (1 - 1e-12)
     if found.status is REFUTED:
         assert found.place is not None
         there = sp.N(expression.xreplace(dict(zip((X, Y), found.place.q, strict=True))), 30)
-        assert {Kind.POSITIVE: there <= 1e-15, Kind.NONNEGATIVE: there < 0, Kind.NONZERO: abs(there) < 1e-15}[kind]
-    if kind is not Kind.NONZERO and not squared and values.min() < -1e-3:
+        assert {
+            ClaimKind.POSITIVE: there <= 1e-15,
+            ClaimKind.NONNEGATIVE: there < 0,
+            ClaimKind.NONZERO: abs(there) < 1e-15,
+        }[kind]
+    if kind is not ClaimKind.NONZERO and not squared and values.min() < -1e-3:
         assert found.status is REFUTED
     if not squared and values.min() > 0.05:
         assert found.status is PROVED

@@ -15,9 +15,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from planar_scenes import SCENE_NAMES
 
-from painleve.mechanics.balls import ball
+from painleve.exact.balls import ball
+from painleve.exact.jets import Jet, jets, monomials
 from painleve.mechanics.derive import derive
-from painleve.mechanics.jets import Jet, jets, monomials
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 

@@ -15,7 +15,7 @@ from planar_scenes import SCENE_NAMES
 from reference_law import DIGITS, Local, Reference, law, to_mp
 from scipy import sparse
 
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.law import law_from_rows, planar_impulse
 from painleve.kernels.compiled import make_kernels
 from painleve.mechanics.library import load_scene
@@ -62,10 +62,10 @@ class Contact:
     def norm(self, v: np.ndarray) -> float:
         return float(np.sqrt(v @ self.M @ v))
 
-    def law(self, v: np.ndarray) -> tuple[np.ndarray, Branch]:
+    def law(self, v: np.ndarray) -> tuple[np.ndarray, ContactMode]:
         result = np.empty_like(v)
         branch = law_from_rows(self.rows, v.size, self.H is not None, v, result)
-        return result, Branch(branch)
+        return result, ContactMode(branch)
 
 
 def random_contact(rng: np.random.Generator, ratio: float | None = None) -> Contact:
@@ -124,7 +124,7 @@ def test_s_is_the_projection_that_an_interior_point_solver_finds_on_4000_contact
         signs.append(contact.gamma > 0.0)
         branches.append(branch)
     assert min(signs.count(True), signs.count(False)) > 1000
-    assert min(branches.count(b) for b in (Branch.STICK, Branch.SLIP_PLUS, Branch.SLIP_MINUS)) > 500
+    assert min(branches.count(b) for b in (ContactMode.STICK, ContactMode.SLIP_PLUS, ContactMode.SLIP_MINUS)) > 500
 
 
 def test_s_is_the_projection_that_a_modelling_language_finds_from_the_paper_s_formula():
@@ -154,14 +154,14 @@ def test_without_friction_s_is_the_projection_on_the_tangent_space_in_the_kineti
         contact = Contact(M=planar.M, w_n=planar.w_n, H=None, minus=0.0, plus=0.0)
         v = impacting(contact, rng)
         result, branch = contact.law(v)
-        assert branch is Branch.FRICTIONLESS
+        assert branch is ContactMode.FRICTIONLESS
         assert contact.norm(result - clarabel_velocity(contact, v)) < SOLVER * max(1.0, contact.norm(v))
         tangent = np.linalg.svd(contact.w_n[None, :])[2][1:].T  # an orthonormal basis of T
         closest = tangent @ np.linalg.solve(tangent.T @ contact.M @ tangent, tangent.T @ contact.M @ v)
         np.testing.assert_allclose(result, closest, rtol=0, atol=1e-11 * max(1.0, np.abs(v).max()))
 
 
-# --- the identities of the project's notes, section 2 ----------------------------------------------------------------
+# --- the identities of docs/theory.md, section 2 ----------------------------------------------------------------
 
 SEEDS = st.integers(0, 2**32 - 1)
 RATIOS = st.sampled_from([0.0, 1e-9, 0.3, 0.999, 1.001, 3.0, 1e3])
@@ -177,7 +177,7 @@ def test_s_leaves_every_velocity_alone_that_is_not_stopped(seed, ratio):
     apart = Contact(M=contact.M, w_n=contact.w_n, H=contact.H, minus=contact.minus, plus=contact.plus, g=-1e-300)
     for there, velocity in ((contact, -v), (apart, v), (apart, -v), (contact, np.zeros_like(v))):
         result, branch = there.law(velocity)
-        assert branch is Branch.FREE
+        assert branch is ContactMode.FREE
         assert np.array_equal(result, velocity)
 
 
@@ -244,11 +244,11 @@ def test_in_the_plane_the_projection_is_coulomb_s_law_of_maximal_dissipation(see
     result, branch = contact.law(v)
     slip = contact.H @ result
     small = 1e-12 * condition(contact) * max(1.0, contact.norm(v)) * np.linalg.norm(contact.H)
-    if branch is Branch.STICK:
+    if branch is ContactMode.STICK:
         assert abs(slip) <= small
-    if branch is Branch.SLIP_PLUS:  # r_t = +mu_plus r_n opposes a slip to the left
+    if branch is ContactMode.SLIP_PLUS:  # r_t = +mu_plus r_n opposes a slip to the left
         assert slip <= small
-    if branch is Branch.SLIP_MINUS:
+    if branch is ContactMode.SLIP_MINUS:
         assert slip >= -small
 
 
@@ -274,13 +274,13 @@ def test_a_tiny_compliance_of_either_sign_gives_the_least_energy_of_the_definiti
     r_n, r_t, branch = planar_impulse(a, b, C, edge, 2.0, 2.0, 2.0, v_n, v_t)
     stick = np.linalg.solve([[a, b], [b, C]], [-v_n, -v_t])
     if stick[1] * edge > -2.0 * v_n:  # beyond the edge that lifts
-        assert branch == Branch.SLIP_PLUS
+        assert branch == ContactMode.SLIP_PLUS
         assert (r_n, r_t) == (-v_n / edge, -2.0 * v_n / edge)
     elif -stick[1] * 2.0 > -2.0 * v_n:
-        assert branch == Branch.SLIP_MINUS
+        assert branch == ContactMode.SLIP_MINUS
         assert (r_n, r_t) == (-v_n / 2.0, v_n)
     else:
-        assert branch == Branch.STICK
+        assert branch == ContactMode.STICK
         np.testing.assert_allclose([r_n, r_t], stick, rtol=1e-15)
 
 
@@ -347,10 +347,10 @@ def test_every_compiled_row_is_what_the_definition_gives_at_60_digits(name):
 @pytest.mark.parametrize("name", SCENE_NAMES)
 def test_the_compiled_law_of_a_scene_is_the_least_energy_of_the_definition(name):
     kernels, reference = make_kernels(load_scene(name)), Reference(load_scene(name))
-    counts = dict.fromkeys(Branch, 0)
+    counts = dict.fromkeys(ContactMode, 0)
     for q, p, v in scene_points(name, 400):
         result = np.empty(v.size)
-        branch = Branch(kernels.law_at(q, p, v, result))
+        branch = ContactMode(kernels.law_at(q, p, v, result))
         counts[branch] += 1
         with mpmath.workdps(30):
             local = reference.at([to_mp(x) for x in q], [to_mp(x) for x in p])
@@ -359,9 +359,9 @@ def test_the_compiled_law_of_a_scene_is_the_least_energy_of_the_definition(name)
         # Where an edge is nearly critical, its slip is a quotient of small numbers.
         smallest = min(abs(x) for x in lifts) / max(abs(x) for x in lifts)
         np.testing.assert_allclose(result, expected, rtol=0, atol=1e-12 * (1.0 + np.abs(v).max()) / smallest)
-    assert counts[Branch.FREE] > 50
-    assert counts[Branch.STICK] > 20
-    assert counts[Branch.SLIP_PLUS] + counts[Branch.SLIP_MINUS] > 20
+    assert counts[ContactMode.FREE] > 50
+    assert counts[ContactMode.STICK] > 20
+    assert counts[ContactMode.SLIP_PLUS] + counts[ContactMode.SLIP_MINUS] > 20
 
 
 def test_a_section_of_zero_width_acts_like_no_friction():

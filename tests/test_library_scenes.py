@@ -8,16 +8,16 @@ import sympy as sp
 from planar_scenes import SCENE_NAMES as PLANAR
 from reference_law import Reference, dot, gamma_squared, to_mp
 
-from painleve.asymptotics.limit_set import limit_set
-from painleve.asymptotics.theorem import Branch, classify
 from painleve.errors import InputError
+from painleve.exact.parse import exact_number
+from painleve.exact.signs import Sign, exact_sign
 from painleve.mechanics.derive import derive
 from painleve.mechanics.friction import Segment
 from painleve.mechanics.library import SCENE_NAMES, load_scene
-from painleve.mechanics.parse import exact_number
 from painleve.mechanics.scene import Scene, make_scene
-from painleve.mechanics.signs import Sign, exact_sign
 from painleve.mechanics.state import make_state, resolve_parameters
+from painleve.theory.classification import Branch, classify
+from painleve.theory.limit_set import limit_set
 
 ROD, GENERAL, BODY, ELLIPSE = (load_scene(n) for n in ("slender_rod", "general_rod", "planar_body", "ellipse"))
 OBSTACLE, ARM, LINKS = (load_scene(n) for n in ("rod_on_obstacle", "two_link_arm", "general_arm"))

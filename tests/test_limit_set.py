@@ -13,15 +13,15 @@ from planar_scenes import SCENE_NAMES
 from reference_law import DIGITS, Reference, dot, law, norm, to_mp
 from scipy import sparse
 
-from painleve.asymptotics.limit_set import LimitSet, limit_set
+from painleve.exact.signs import Sign, exact_sign
 from painleve.mechanics.derive import derive
 from painleve.mechanics.friction import Segment
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.scene import Coordinate, StateKey, make_scene
-from painleve.mechanics.signs import Sign, exact_sign
 from painleve.mechanics.state import State, make_state
+from painleve.sets import LineSegment as Stretch
 from painleve.sets import Points
-from painleve.sets import Segment as Stretch
+from painleve.theory.limit_set import LimitSet, limit_set
 
 NAMED = [(name, state.name) for name in SCENE_NAMES for state in load_scene(name).states if state.name != "stoss"]
 KINDS = {"sliding": "point", "paradox": "pair"}

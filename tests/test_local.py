@@ -4,11 +4,11 @@ import flint
 import numpy as np
 import pytest
 
-from painleve.asymptotics.limit_set import limit_set
 from painleve.asymptotics.local import BITS, make_local_problem
 from painleve.asymptotics.member import row_balls
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
+from painleve.theory.limit_set import limit_set
 
 STATES = [("slender_rod", "double_zero"), ("worn_tip_rod", "isolated"), ("two_link_arm", "approached")]
 

@@ -10,12 +10,12 @@ import pytest
 import sympy as sp
 from reference_law import Reference, gamma_squared, to_mp
 
-from painleve.asymptotics.limit_set import limit_set
 from painleve.mechanics.friction import Segment
 from painleve.mechanics.library import load_scene
-from painleve.mechanics.neighbourhood import Neighbourhood, neighbours
 from painleve.mechanics.scene import Coordinate, Parameter, Scene, StateKey, make_scene
 from painleve.mechanics.state import State, make_state
+from painleve.theory.limit_set import limit_set
+from painleve.theory.neighbourhood import Neighbourhood, neighbours
 
 APPROACHED, ISOLATED, UNDECIDED = Neighbourhood.APPROACHED, Neighbourhood.ISOLATED, Neighbourhood.UNDECIDED
 X, Y = (Coordinate(name=n, unit="m", sentence=f"coordinate {n}") for n in ("x", "y"))

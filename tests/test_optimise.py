@@ -8,17 +8,17 @@ import sympy as sp
 from planar_scenes import SCENE_NAMES
 from scipy.optimize import minimize
 
-from painleve.asymptotics.limit_set import LimitSet, limit_set
 from painleve.asymptotics.local import make_local_problem
 from painleve.asymptotics.optimise import OptimiseOptions, optimise_distance
 from painleve.asymptotics.sample import SampleOptions, sample_distance
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.farthest import farthest
 from painleve.errors import InputError
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.scene import Coordinate, StateKey, make_scene
 from painleve.mechanics.state import make_state
-from painleve.sets import Segment
+from painleve.sets import LineSegment
+from painleve.theory.limit_set import LimitSet, limit_set
 
 STATES = [(scene, state.name) for scene in SCENE_NAMES for state in load_scene(scene).states]
 SPINNING = [  # keys of the rod with an angular velocity, one in each branch
@@ -102,7 +102,7 @@ def test_the_bound_is_a_true_member_that_attains_the_estimate_to_nine_digits(sce
 
 def distance_to(limit: LimitSet, points: np.ndarray) -> float:
     shape = limit.shape
-    if isinstance(shape, Segment):
+    if isinstance(shape, LineSegment):
         unit = shape.direction
         along = np.clip((points - shape.start) @ unit, 0.0, shape.length)
         return float(np.linalg.norm(points - shape.start - along * unit))
@@ -114,7 +114,7 @@ def slsqp(limit: LimitSet, eps: float, starts: int = 6) -> float:
     problem = make_local_problem(limit)
     d, rows = problem.dimension, np.empty(problem.base.size)
 
-    def law(z: np.ndarray, branch: Branch) -> tuple[np.ndarray, list[float]]:
+    def law(z: np.ndarray, branch: ContactMode) -> tuple[np.ndarray, list[float]]:
         """S on that branch, and what must be >= 0 for it to be S; all divided by eps."""
         v = problem.u + eps * z[d:]
         problem.kernels.rows_at(problem.q + eps * z[:d], problem.p, rows)
@@ -126,14 +126,14 @@ def slsqp(limit: LimitSet, eps: float, starts: int = 6) -> float:
         room = [rows[0] / eps, -v_n / eps, 1.0 - z[:d] @ z[:d], 1.0 - z[d:] @ z[d:]]
         edges, mu = {1: rows[2 + 2 * d], -1: minus}, {1: mu_plus, -1: mu_minus}
         over = {s: s * stick[1] * edges[s] + mu[s] * v_n for s in (1, -1)}
-        if branch is Branch.STICK:
+        if branch is ContactMode.STICK:
             return v + stick @ Y, [*room, *(-over[s] / eps if edges[s] > 0.0 else 0.0 for s in (1, -1))]
-        s = 1 if branch is Branch.SLIP_PLUS else -1
+        s = 1 if branch is ContactMode.SLIP_PLUS else -1
         lam = -v_n / edges[s] if edges[s] > 1e-300 else 0.0
         return v + lam * (Y_n + s * mu[s] * Y_t), [*room, over[s] / eps, (edges[s] - 1e-12) / eps]
 
     rng, best = np.random.default_rng(1), 1.0
-    for branch in (Branch.STICK, Branch.SLIP_PLUS, Branch.SLIP_MINUS):
+    for branch in (ContactMode.STICK, ContactMode.SLIP_PLUS, ContactMode.SLIP_MINUS):
         for _ in range(starts):
             z = np.concatenate([x / np.linalg.norm(x) for x in rng.normal(size=(2, d))]) * rng.uniform(0.3, 1.0)
             with np.errstate(all="ignore"):

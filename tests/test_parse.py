@@ -15,7 +15,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from painleve.errors import InputError
-from painleve.mechanics.parse import exact_number, parse_expression, parse_number
+from painleve.exact.parse import exact_number, parse_expression, parse_number
 
 X, MU = sympy.symbols("x mu", real=True)
 SYMBOLS = {"x": X, "mu": MU}

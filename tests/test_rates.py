@@ -7,13 +7,13 @@ import pytest
 import sympy as sp
 from planar_scenes import SCENE_NAMES
 
-from painleve.asymptotics.limit_set import LimitSet, limit_set
 from painleve.asymptotics.local import make_local_problem
 from painleve.asymptotics.member import make_member
 from painleve.asymptotics.optimise import optimise_distance
 from painleve.asymptotics.rates import rate
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
+from painleve.theory.limit_set import LimitSet, limit_set
 
 STATES = [(scene, state.name) for scene in SCENE_NAMES for state in load_scene(scene).states]
 SPINNING = [  # theta, slip, angular velocity, mu of the rod

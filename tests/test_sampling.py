@@ -18,11 +18,10 @@ from scipy import stats
 
 from painleve import sets
 from painleve.asymptotics.distance import Distance
-from painleve.asymptotics.limit_set import limit_set
 from painleve.asymptotics.local import LocalProblem, make_local_problem
 from painleve.asymptotics.member import make_member, row_balls
 from painleve.asymptotics.sample import BINS, KINDS, SAMPLERS, SampleOptions, _Stream, sample_distance, sample_members
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.law import planar_impulse
 from painleve.core.offset import planar_split
 from painleve.core.reduce import distance_squared
@@ -30,6 +29,7 @@ from painleve.core.sampling import BLOCK
 from painleve.core.taylor import monomial_block, polynomial_block, sparse_polynomials
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
+from painleve.theory.limit_set import limit_set
 
 STATES = [(scene, state.name) for scene in SCENE_NAMES for state in load_scene(scene).states]
 RADII = (1e-1, 1e-4, 1e-8, 1e-12)
@@ -96,7 +96,7 @@ def test_every_sample_is_in_both_closed_balls_and_in_contact_where_it_claims_to_
         for dq, dv, branch, *_ in some_samples(problem, eps, sampler, step=5):
             assert sum(Fraction(float(x)) ** 2 for x in dq) <= squared
             assert sum(Fraction(float(x)) ** 2 for x in dv) <= squared
-            if branch != Branch.FREE:
+            if branch != ContactMode.FREE:
                 assert row_balls(problem, [flint.arb(float(x)) for x in dq])[0] >= 0
 
 
@@ -232,12 +232,12 @@ def _excess_by_bins(problem: LocalProblem, offset: np.ndarray) -> float:
     order = np.lexsort((np.arange(len(t)), rho, bins))
     kept = list(order[np.unique(bins[order], return_index=True)[1]])
     kept += [int(np.argmin(rho**2 + t**2)), int(np.argmin(rho**2 + (t - problem.length) ** 2))]
-    segment = sets.Segment(np.zeros(2), np.array([problem.length, 0.0]))
+    segment = sets.LineSegment(np.zeros(2), np.array([problem.length, 0.0]))
     return float(sets.excess(segment, sets.Cloud(np.stack([t[kept], rho[kept]], axis=1))).bounds.upper)
 
 
 def test_slips_at_the_double_zero_are_as_rare_as_the_notes_say():
-    """Section 6 of the project's notes: of 20,000 uniform samples 183, 15 and 1 slipped at eps = 1e-1, 1e-2, 1e-3."""
+    """Section 6 of docs/theory.md: of 20,000 uniform samples 183, 15 and 1 slipped at eps = 1e-1, 1e-2, 1e-3."""
     limit, many = problem_of("slender_rod", "double_zero").limit, 10**7
     for eps, noted in ((1e-1, 183), (1e-2, 15), (1e-3, 1)):
         counts = sample_distance(limit, eps, SampleOptions(samples=many, sampler="uniform")).counts
@@ -265,7 +265,9 @@ def test_the_law_by_selection_is_the_law_by_cases():
         assert (code, tau) == (branch, 0.0)
         assert found == pytest.approx(expected, rel=1e-12, abs=1e-12 * float(np.abs(expected).max()))
         seen.add((code, min(edges) > 0.0))
-    assert seen == {(c, side) for c in (Branch.STICK, Branch.SLIP_PLUS, Branch.SLIP_MINUS) for side in (True, False)}
+    assert seen == {
+        (c, side) for c in (ContactMode.STICK, ContactMode.SLIP_PLUS, ContactMode.SLIP_MINUS) for side in (True, False)
+    }
 
 
 @pytest.mark.parametrize("edge", [0.0, -1.0, 5e-324])
@@ -274,9 +276,9 @@ def test_what_is_not_selected_may_be_infinite_and_does_no_harm(edge: float):
     code, tau, e_n, e_t = planar_split(
         True, 1.0, 0.0, 1.0, edge, edge, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -2.0, 0.5, 0.0, 0.0, 0.0, 0
     )
-    assert (code, tau, e_n, e_t) == (Branch.STICK, 0.0, 2.0, -0.5)
+    assert (code, tau, e_n, e_t) == (ContactMode.STICK, 0.0, 2.0, -0.5)
     free = planar_split(False, 1.0, 0.0, 1.0, edge, edge, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.5, 0.0, 0.0, 0.0, 0)
-    assert free == (Branch.FREE, 0.0, 0.0, 0.0)
+    assert free == (ContactMode.FREE, 0.0, 0.0, 0.0)
 
 
 def _monomials(variables: int, degree: int) -> tuple[list[tuple[int, ...]], np.ndarray, np.ndarray]:

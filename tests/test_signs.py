@@ -12,7 +12,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from sympy import Rational, acos, asin, atan, atan2, cos, cosh, cot, exp, log, pi, root, sin, sinh, sqrt, tan, tanh
 
-from painleve.mechanics.signs import Sign, exact_sign
+from painleve.exact.signs import Sign, exact_sign
 
 SECONDS = 30.0  # of the processor: what is unbounded takes hours, what is bounded far less on any machine
 X = sympy.Symbol("x")
@@ -21,7 +21,7 @@ QUADRATIC = sympy.CRootOf(X**2 - 6 * X + 4, 0)  # 3 - sqrt(5), where the rod wit
 
 
 def edge(mu: sympy.Expr, theta: sympy.Expr) -> sympy.Expr:
-    """gamma of the uniform slender rod with m = 1 (the project's notes, section 6)."""
+    """gamma of the uniform slender rod with m = 1 (docs/theory.md, section 6)."""
     return 1 + 3 * cos(theta) ** 2 - 3 * mu * sin(theta) * cos(theta)
 
 

@@ -13,9 +13,8 @@ from dynamics_scenes import space_block
 from scipy.integrate import solve_ivp
 
 import painleve
-from painleve.asymptotics.limit_set import limit_set
-from painleve.core.codes import Branch
-from painleve.core.motion_codes import Change, Outcome
+from painleve.core.codes import ContactMode
+from painleve.core.motion_codes import Change, MemberOutcome
 from painleve.dynamics.ensemble import run_ensemble
 from painleve.dynamics.proposition1 import check_proposition1
 from painleve.dynamics.schemes import SCHEME_NAMES
@@ -25,6 +24,7 @@ from painleve.mechanics.derive import derive
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 from painleve.sweep.trajectories import trajectory_dataset
+from painleve.theory.limit_set import limit_set
 
 ROD = load_scene("spatial_rod")
 SECTIONS = ("ellipse", "kite")  # of the block; the rod has a disc
@@ -75,10 +75,10 @@ def test_proposition_1_holds_at_every_step_of_random_scenes(section: str) -> Non
         for margin in MARGINS:
             assert getattr(found.proposition1, margin).shape == (400,)
             assert found.proposition1.worst(margin)[0] <= 1e-13
-        signs |= {bool(s) for s in found.contact_quantities()["gamma"][found.branch != Branch.FREE] < 0.0}
+        signs |= {bool(s) for s in found.contact_quantities()["gamma"][found.branch != ContactMode.FREE] < 0.0}
         branches |= {int(b) for b in found.branch}
     assert signs == {True, False}
-    assert branches == {Branch.FREE, Branch.STICK, Branch.SLIP}
+    assert branches == {ContactMode.FREE, ContactMode.STICK, ContactMode.SLIP}
 
 
 @pytest.mark.parametrize("width", [0.0, 1e-12, 1e-9, 1e-6, 1e-3])
@@ -93,7 +93,7 @@ def test_rounding_does_not_take_an_impulse_out_of_a_thin_ellipse(width: float) -
 def test_the_margins_of_proposition_1_notice_a_wrong_step(section: str) -> None:
     start = random_start(section, 3, weight=10.0, mu=0.5, nu=0.3, bend=0.0)
     found = simulate(start, step=1e-2, until=1.0)
-    slips = np.flatnonzero(found.branch == Branch.SLIP)
+    slips = np.flatnonzero(found.branch == ContactMode.SLIP)
     i = int(slips[len(slips) // 2])
     for wrong in ([0.0, 0.0, -1e-6], [1e-6, 0.0, 0.0], [-1e-6, 0.0, 0.0]):
         u = found.u.copy()
@@ -132,7 +132,7 @@ def test_the_impulses_are_in_the_tangents_of_the_scene_and_in_its_section(sectio
         along, across = np.cos(angle) * first + np.sin(angle) * second, np.cos(angle) * second - np.sin(angle) * first
         reach = np.hypot(along / mu, across / nu)
     assert (reach <= normal * (1.0 + 1e-10) + 1e-15).all()
-    slips = found.branch == Branch.SLIP
+    slips = found.branch == ContactMode.SLIP
     assert slips.sum() > 50
     np.testing.assert_allclose(reach[slips], normal[slips], rtol=1e-10)
 
@@ -173,8 +173,8 @@ def test_a_rod_in_its_vertical_plane_moves_as_the_rod_in_the_plane(scheme: str, 
     np.testing.assert_allclose(space.r[:, :2], plane.r, atol=1e-11)
     assert not space.q[:, [1, 4]].any()
     np.testing.assert_array_equal(space.change, plane.change)
-    slips = np.isin(plane.branch, (Branch.SLIP_PLUS, Branch.SLIP_MINUS))
-    np.testing.assert_array_equal(space.branch, np.where(slips, Branch.SLIP, plane.branch))
+    slips = np.isin(plane.branch, (ContactMode.SLIP_PLUS, ContactMode.SLIP_MINUS))
+    np.testing.assert_array_equal(space.branch, np.where(slips, ContactMode.SLIP, plane.branch))
 
 
 def test_the_azimuth_turns_the_trajectory() -> None:
@@ -220,8 +220,8 @@ def test_a_sliding_point_mass_stops_after_the_way_of_constant_friction(
     assert errors[1] < errors[0] / 5
 
 
-@pytest.mark.parametrize(("state", "ends_in"), [("paradox", Branch.STICK), ("oblique", Branch.SLIP)])
-def test_from_an_approach_the_scheme_jumps_to_where_the_limit_set_says(state: str, ends_in: Branch) -> None:
+@pytest.mark.parametrize(("state", "ends_in"), [("paradox", ContactMode.STICK), ("oblique", ContactMode.SLIP)])
+def test_from_an_approach_the_scheme_jumps_to_where_the_limit_set_says(state: str, ends_in: ContactMode) -> None:
     exact = make_state(ROD, state)
     limit = limit_set(exact)
     names = [c.name for c in ROD.coordinates]
@@ -283,7 +283,7 @@ def test_a_smooth_slide_in_space_converges_with_first_order() -> None:
         errors = []
         for h in (1e-3, 1e-4):
             found = simulate(start, scheme=scheme, step=h, until=0.25, contact_tolerance=0.1, monitor=False)
-            assert (found.branch[1:] == Branch.SLIP).all()
+            assert (found.branch[1:] == ContactMode.SLIP).all()
             errors.append(np.abs(np.concatenate([found.q[-1], found.u[-1]]) - exact.y[:, -1]).max())
         assert math.log10(errors[0] / errors[1]) == pytest.approx(1.0, abs=0.02)
         assert errors[1] < 1e-3
@@ -291,12 +291,12 @@ def test_a_smooth_slide_in_space_converges_with_first_order() -> None:
 
 def test_the_members_of_an_ensemble_are_trajectories() -> None:
     ensemble = run_ensemble(make_state(ROD, "oblique"), step=1e-3, count=8, until=0.05, spread=1.0, keep=True)
-    assert ensemble.counts[Outcome.JUMP] == 8
+    assert ensemble.counts[MemberOutcome.JUMP] == 8
     for h, time in zip(ensemble.members.step, ensemble.members.time, strict=True):
         (jump, *_) = simulate(make_state(ROD, "oblique"), step=float(h), until=0.05).jumps
         assert jump.time == time
     sliding = run_ensemble(make_state(ROD, "sliding"), step=1e-3, count=8, until=0.05, ball=1e-3)
-    assert sliding.counts[Outcome.JUMP] == 0
+    assert sliding.counts[MemberOutcome.JUMP] == 0
 
 
 def test_a_trajectory_in_space_is_stored_and_drawn(tmp_path) -> None:

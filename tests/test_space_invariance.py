@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from painleve.asymptotics.coulomb.one_step import coulomb_solutions
-from painleve.asymptotics.limit_set import limit_set
 from painleve.kernels.compiled import make_kernels
 from painleve.mechanics.derive import derive
 from painleve.mechanics.friction import Disc, Ellipse
@@ -16,6 +14,8 @@ from painleve.mechanics.library.slender_rod import MU
 from painleve.mechanics.library.spatial_rod import make_spatial_rod
 from painleve.mechanics.scene import Coordinate, make_scene
 from painleve.mechanics.state import make_state
+from painleve.theory.coulomb.one_step import coulomb_solutions
+from painleve.theory.limit_set import limit_set
 
 HALF = sp.Rational(1, 2)
 SECTIONS = {

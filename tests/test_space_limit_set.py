@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from painleve.asymptotics.limit_set import limit_set
-from painleve.asymptotics.theorem import classify
 from painleve.errors import InputError
 from painleve.mechanics.derive import derive
 from painleve.mechanics.friction import Disc, Ellipse, Polygon
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.scene import Coordinate, make_scene
 from painleve.mechanics.state import make_state
+from painleve.theory.classification import classify
+from painleve.theory.limit_set import limit_set
 
 HALF = sp.Rational(1, 2)
 UNIT_SQUARE = Polygon(vertices=((1, -1), (1, 1), (-1, 1), (-1, -1)))

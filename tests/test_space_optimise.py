@@ -8,17 +8,17 @@ from scipy.optimize import differential_evolution
 from space_scenes import CRITICAL, STATES, limit_of
 
 from painleve.asymptotics.distance import Distance
-from painleve.asymptotics.limit_set import LimitSet, limit_set
 from painleve.asymptotics.local import make_local_problem
 from painleve.asymptotics.optimise import OptimiseOptions, optimise_distance
 from painleve.asymptotics.sample import KINDS, SampleOptions, sample_distance
 from painleve.asymptotics.space.ball import SpaceBall
 from painleve.asymptotics.space.charts import Along, Sticking, Whole
 from painleve.asymptotics.space.rates import root_rate
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
-from painleve.sets import Segment
+from painleve.sets import LineSegment
+from painleve.theory.limit_set import LimitSet, limit_set
 
 SOME = [("spatial_rod", s) for s in ("sliding", "paradox", "oblique", "critical", "critical_oblique", "double_zero")]
 SOME += [("spatial_rod_ellipse", s) for s in ("oblique", "tilted")] + [("square_rod", "oblique")]
@@ -98,7 +98,7 @@ def test_the_supremum_tends_to_the_derived_constant_times_the_root_of_eps(scene,
 
 def distance_to(limit: LimitSet, point: np.ndarray) -> float:
     shape = limit.shape
-    if isinstance(shape, Segment):
+    if isinstance(shape, LineSegment):
         unit = shape.direction
         along = np.clip((point - shape.start) @ unit, 0.0, shape.length)
         return float(np.linalg.norm(point - shape.start - along * unit))
@@ -140,8 +140,8 @@ def test_the_sticking_map_and_its_condition_are_the_law_where_the_law_sticks(eps
     value, branch = ball.values(x, dv, rows, changes)
     mapped, conditions = Sticking(ball).evaluate(np.vstack([x, dv]))
     hit = conditions[3] > 0.0
-    assert np.array_equal(conditions[4][hit] >= 0.0, branch[hit] == Branch.STICK)
-    sticks = hit & (branch == Branch.STICK)
+    assert np.array_equal(conditions[4][hit] >= 0.0, branch[hit] == ContactMode.STICK)
+    sticks = hit & (branch == ContactMode.STICK)
     assert 0.1 < np.mean(sticks[hit]) < 0.99
     assert mapped[sticks] == pytest.approx(value[sticks], rel=1e-9)
 

@@ -10,16 +10,16 @@ import sympy as sp
 from reference_law import to_mp
 from space_scenes import SCENES, STATES, Impulse, limit_of, polygon_rod
 
-from painleve.asymptotics.limit_set import limit_set
 from painleve.asymptotics.local import make_local_problem
 from painleve.asymptotics.member import make_member
 from painleve.asymptotics.sample import SampleOptions, _Stream, sample_distance, sample_members
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.sampling import BLOCK
 from painleve.kernels.compiled import make_kernels
 from painleve.mechanics.friction import Polygon
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
+from painleve.theory.limit_set import limit_set
 
 CORRECT = 1e-9  # relative, of a distance: where gamma = 0 it is 1e-6 at the smallest eps, and rounding is 1e-16
 DIGITS = 90
@@ -67,13 +67,13 @@ def test_members_in_space_satisfy_the_conditions_of_least_energy_at_90_digits(sc
             member = make_member(problem, dq[:, i], dv[:, i])
             v = [x + to_mp(y) for x, y in zip(u, dv[:, i], strict=True)]
             S = [x + to_mp(y) for x, y in zip(u, member.enclosure, strict=True)]
-            if member.branch is Branch.FREE:
+            if member.branch is ContactMode.FREE:
                 assert max(abs(x - y) for x, y in zip(S, v, strict=True)) < tiny
                 continue
             impulse = Impulse(limit.state, list(dq[:, i]), v, S)
             assert impulse.residual < tiny
             assert abs(impulse.normal_velocity) < tiny
-            if member.branch is Branch.STICK:
+            if member.branch is ContactMode.STICK:
                 assert mpmath.norm(impulse.velocity) < tiny
             elif isinstance(limit.state.scene.friction, Polygon):
                 assert impulse.is_least_on_polygon(tiny)
@@ -114,15 +114,15 @@ def test_the_compiled_law_in_space_is_what_a_cone_solver_finds(name):
         q[2] = np.sin(q[3]) - 0.01
         v, result = rng.normal(size=5), np.empty(5)
         branch = kernels.law_at(q, p, v, result)
-        seen.add(Branch(branch))
-        if branch == Branch.FREE:
+        seen.add(ContactMode(branch))
+        if branch == ContactMode.FREE:
             assert np.array_equal(result, v)
             continue
         rows = np.empty(len(kernels.rows.names))
         kernels.rows_at(q, p, rows)
         # a gap of 1e-9 in the solver's energy leaves the root of that in its point
         assert result == pytest.approx(clarabel(scene, (kernels.rows.names, rows), v), abs=3e-4)
-    assert seen == {Branch.FREE, Branch.STICK, Branch.SLIP}
+    assert seen == {ContactMode.FREE, ContactMode.STICK, ContactMode.SLIP}
 
 
 @pytest.mark.parametrize("heading", ["pi", "0"])
@@ -142,7 +142,7 @@ def test_in_the_rods_plane_the_disc_gives_the_planar_law(heading):
         seen.add(flat.branch)
         assert deep.offset[[0, 2, 3]] == pytest.approx(flat.offset, rel=1e-12, abs=1e-15)
         assert np.abs(deep.offset[[1, 4]]).max() < 1e-60
-        assert (deep.branch is Branch.SLIP) == (flat.branch in (Branch.SLIP_PLUS, Branch.SLIP_MINUS))
+        assert (deep.branch is ContactMode.SLIP) == (flat.branch in (ContactMode.SLIP_PLUS, ContactMode.SLIP_MINUS))
     assert len(seen) == 3 if heading == "pi" else len(seen) >= 2
 
 
@@ -159,7 +159,7 @@ def test_distances_do_not_depend_on_the_azimuth(state):
         dq, dv = 1e-4 * rng.normal(size=(2, 5))
         one, other = make_member(straight, dq, dv), make_member(turned, turn @ dq, turn @ dv)
         assert one.branch is other.branch
-        slips += one.branch is Branch.SLIP
+        slips += one.branch is ContactMode.SLIP
         assert other.distance[0] == pytest.approx(one.distance[0], rel=1e-8)
     assert slips > 5
 

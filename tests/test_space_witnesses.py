@@ -8,16 +8,17 @@ import pytest
 from reference_law import to_mp
 from space_scenes import CRITICAL, SCENES, STATES, Impulse, limit_of
 
-from painleve.asymptotics.limit_set import LimitSet, limit_set
 from painleve.asymptotics.local import make_local_problem
 from painleve.asymptotics.member import make_member
 from painleve.asymptotics.methods import distance
 from painleve.asymptotics.rates import rate
 from painleve.asymptotics.sample import SampleOptions, sample_distance
-from painleve.asymptotics.theorem import Branch, Status, classify, collect, judge, slope
+from painleve.asymptotics.theorem import VerdictStatus, collect, judge, slope
 from painleve.asymptotics.witness import find_family, find_witness
 from painleve.errors import InputError
 from painleve.mechanics.state import make_state
+from painleve.theory.classification import Branch, classify
+from painleve.theory.limit_set import LimitSet, limit_set
 
 CRITICAL_STATES = [(scene, state) for scene, state in STATES if limit_of(scene, state).kind == "segment"]
 ROOTS = [(s, x) for s, x in CRITICAL_STATES if limit_of(s, x).after != "sticks" and s != "square_rod"]
@@ -102,7 +103,7 @@ def test_the_verdict_on_every_named_state_in_space_is_consistent(scene, state):
         collect(found, eps, lambda limit, radius: sample_distance(limit, radius, options)) for eps in (1e-3, 1e-5, 1e-7)
     ]
     verdict = judge(found, evidence)
-    assert verdict.status is Status.CONSISTENT
+    assert verdict.status is VerdictStatus.CONSISTENT
     expected = 0.5 if (scene, state) in ROOTS else 1.0
     assert verdict.slope == pytest.approx(expected, abs=0.03)
     kinds = {"sliding": Branch.NONE, "paradox": Branch.NEGATIVE, "oblique": Branch.NEGATIVE}

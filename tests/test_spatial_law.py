@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference_spatial_law import exact_disc_impulse
 
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.law import planar_impulse
 from painleve.core.space.conic_law import disc_impulse
 from painleve.core.space.polygon_law import polygon_impulse
@@ -43,14 +43,14 @@ class Contact:
     def Q(self) -> np.ndarray:
         return self.C - np.outer(self.b, self.b) / self.a
 
-    def impulse(self, v: np.ndarray) -> tuple[np.ndarray, Branch]:
+    def impulse(self, v: np.ndarray) -> tuple[np.ndarray, ContactMode]:
         *r, branch = disc_impulse(self.a, self.p, *self.b, self.C[0, 0], self.C[0, 1], self.C[1, 1], *v)
-        return np.array(r), Branch(branch)
+        return np.array(r), ContactMode(branch)
 
-    def polygon(self, vertices: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, Branch]:
+    def polygon(self, vertices: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, ContactMode]:
         p = self.a + vertices @ self.b
         *r, branch = polygon_impulse(self.a, *self.b, self.C[0, 0], self.C[0, 1], self.C[1, 1], vertices, p, *v)
-        return np.array(r), Branch(branch)
+        return np.array(r), ContactMode(branch)
 
     def narrower_disc(self, radius: float, v: np.ndarray) -> np.ndarray:
         """The impulse of the disc of this radius."""
@@ -90,7 +90,7 @@ def test_the_disc_s_impulse_is_exact_to_rounding_for_every_sign_of_gamma(shape):
         assert branch.label == exact[3]
         assert relative_error(found, exact) <= 10.0 * EPS * np.linalg.cond(contact.Q)
         seen.add(branch)
-    assert Branch.SLIP in seen
+    assert ContactMode.SLIP in seen
 
 
 def solver_impulse(contact: Contact, v: np.ndarray, vertices: np.ndarray | None = None) -> np.ndarray:
@@ -149,7 +149,7 @@ def test_the_polygon_s_impulse_is_the_projection_that_an_interior_point_solver_f
         expected = solver_impulse(contact, v, vertices)
         size = np.linalg.norm(expected) + np.linalg.norm(v)
         np.testing.assert_allclose(energy_norm(contact, found), expected, rtol=0, atol=SOLVER * size)
-    assert {Branch.SLIP} <= set(branches) <= {Branch.SLIP, Branch.STICK}
+    assert {ContactMode.SLIP} <= set(branches) <= {ContactMode.SLIP, ContactMode.STICK}
 
 
 @given(SEEDS, st.sampled_from(SHAPES), st.integers(-500, 500))
@@ -188,13 +188,13 @@ def test_no_point_of_a_fine_grid_on_the_edge_of_the_cone_has_less_energy(shape):
 
 def test_without_friction_the_impulse_is_normal_and_no_number_is_undefined():
     for v in ([-2.0, 0.0, 0.0], [-2e-300, 0.0, 0.0]):
-        assert disc_impulse(4.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0, *v) == (-v[0] / 4.0, 0.0, 0.0, Branch.SLIP)
+        assert disc_impulse(4.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0, *v) == (-v[0] / 4.0, 0.0, 0.0, ContactMode.SLIP)
         point = np.zeros((1, 2))
         assert polygon_impulse(4.0, 0.5, 0.1, 1.0, 0.2, 1.0, point, np.array([4.0]), v[0], 1.0, 2.0) == (
             -v[0] / 4.0,
             0.0,
             0.0,
-            Branch.SLIP,
+            ContactMode.SLIP,
         )
 
 
@@ -202,7 +202,7 @@ def test_nothing_happens_where_the_normal_velocity_is_not_outward():
     contact = Contact(np.random.default_rng(0), -0.3)
     for v_n in (0.0, 1e-300, 1.0):
         found, branch = contact.impulse(np.array([v_n, 1.0, -2.0]))
-        assert branch is Branch.FREE
+        assert branch is ContactMode.FREE
         assert not found.any()
 
 
@@ -212,7 +212,7 @@ def test_a_regular_polygon_is_between_its_circles_and_tends_to_the_disc_quadrati
     contact = Contact(rng, shape)
     v = np.array([-0.01, *(-3.0 * contact.b / hypot(*contact.b) + [0.5, 1.0])])
     disc, branch = contact.impulse(v)
-    assert branch is Branch.SLIP
+    assert branch is ContactMode.SLIP
     least, gaps = contact.energy(disc, v), []
     for n in (16, 64, 256):
         angles = 2.0 * pi * (np.arange(n) + 0.3) / n
@@ -258,7 +258,7 @@ def test_a_planar_problem_in_space_has_the_planar_answer(shape):
         segment = np.array([[-1.0, 0.0], [1.0, 0.0]])
         spatial = polygon_impulse(a, b, 0.0, C_11, 0.0, C_22, segment, np.array(edges[::-1]), v_n, v_t, 0.0)
         np.testing.assert_allclose([*spatial[:2], spatial[2]], [*planar[:2], 0.0], rtol=1e-13, atol=1e-13)
-        assert (spatial[3] == Branch.STICK) == (planar[2] == Branch.STICK)
+        assert (spatial[3] == ContactMode.STICK) == (planar[2] == ContactMode.STICK)
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -288,6 +288,6 @@ def test_a_disc_whose_b_slip_and_principal_axis_are_parallel_has_the_planar_answ
         plus, minus = (p, a + abs(b)) if b < 0.0 else (a + abs(b), p)
         r_n, r_t, planar = planar_impulse(a, b, C, plus, minus, 1.0, 1.0, v_n, v_t)
         n, r_1, r_2, branch = disc_impulse(a, p, b, 0.0, C, 0.0, across, v_n, v_t, 0.0)
-        assert (branch == Branch.STICK) == (planar == Branch.STICK)
+        assert (branch == ContactMode.STICK) == (planar == ContactMode.STICK)
         assert r_2 == pytest.approx(0.0, abs=1e-14 * n)
         assert (n, r_1) == pytest.approx((r_n, r_t), rel=1e-12, abs=1e-13 * r_n)

@@ -13,11 +13,11 @@ from planar_scenes import SCENE_NAMES
 from reference_law import DIGITS, Reference, dot, to_mp
 
 from painleve.errors import InputError
+from painleve.exact.signs import Sign, exact_sign
 from painleve.mechanics.derive import derive
 from painleve.mechanics.friction import Segment
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.scene import Coordinate, Parameter, make_scene
-from painleve.mechanics.signs import Sign, exact_sign
 from painleve.mechanics.state import State, make_state
 
 ROD, WORN, ARM = (load_scene(name) for name in SCENE_NAMES)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from study_runs import load_study
 
-from painleve.asymptotics.limit_set import limit_set
 from painleve.asymptotics.local import make_local_problem
 from painleve.asymptotics.member import make_member
 from painleve.asymptotics.methods import METHODS
@@ -16,6 +15,7 @@ from painleve.sweep.naive import naive_distance, naive_members, point_distances,
 from painleve.sweep.near_critical import NearCase
 from painleve.sweep.text_table import text_table
 from painleve.sweep.work_precision import RUN_OUTCOMES
+from painleve.theory.limit_set import limit_set
 
 
 def limit(scene: str, state: str):

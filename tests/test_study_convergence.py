@@ -20,7 +20,7 @@ from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 from painleve.store import load
 from painleve.sweep import StudyResult
-from painleve.sweep.convergence import Effort, sweep_convergence
+from painleve.sweep.convergence import MotionEffort, sweep_convergence
 from painleve.sweep.motion_problems import PROBLEMS, make_reference
 
 BY_NAME = {p.name: p for p in PROBLEMS}
@@ -120,7 +120,9 @@ def test_a_method_that_cannot_go_on_is_kept_as_a_failed_run() -> None:
     problem = replace(
         BY_NAME["rod_slide"], start=lambda: start, until=0.1, closed_form=lambda: velocity_graph([0.0, 0.1], u)
     )
-    effort = Effort(most=200, levels=2, phases=1, tolerances=(1e-6,), stiffnesses=(1e3,), instants=10, patience=0.0)
+    effort = MotionEffort(
+        most=200, levels=2, phases=1, tolerances=(1e-6,), stiffnesses=(1e3,), instants=10, patience=0.0
+    )
     one = sweep_convergence([problem], effort=effort, command="test").isel(problem=0)
     (run,) = np.flatnonzero(one["run_scheme"].values == "event_driven")
     assert np.isnan(one["error_upper"].values[run])

@@ -10,13 +10,13 @@ import pytest
 import xarray as xr
 from study_runs import load_study
 
-from painleve.asymptotics.limit_set import limit_set
 from painleve.errors import InputError
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import State, make_state
 from painleve.store import load
 from painleve.sweep import StudyResult
 from painleve.sweep.laws import map_laws
+from painleve.theory.limit_set import limit_set
 
 
 @pytest.fixture(scope="module")

@@ -22,16 +22,16 @@ from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 from painleve.store import load
 from painleve.sweep import StudyResult, map_regimes
-from painleve.sweep.reference.compare import Found, Status, compare
+from painleve.sweep.reference.compare import FactStatus, Finding, compare
 from painleve.sweep.reference.contact import regime, step_solutions
-from painleve.sweep.reference.facts import Fact, Kind, load_facts
+from painleve.sweep.reference.facts import Fact, FactKind, load_facts
 from painleve.sweep.reference.rod import eigenvalue_ratio
 from painleve.sweep.reference.routes import ROUTES, reproduce
 from painleve.sweep.reference.slip import ArcEnd, derive_slip, make_flow
 
 ROOT = Path(__file__).parents[1]
 FACTS = load_facts(ROOT / "data" / "reference" / "facts.toml")
-NUMBERS = [fact for fact in FACTS if fact.kind is not Kind.LABEL]
+NUMBERS = [fact for fact in FACTS if fact.kind is not FactKind.LABEL]
 HEAD = '[source.a]\nauthors = "A. Author"\nyear = 2000\nread = "abstract"\n\n'
 ENTRY = {
     "id": '"f"',
@@ -104,32 +104,32 @@ def test_a_fact_without_a_route_is_refused() -> None:
 @pytest.mark.parametrize("fact", NUMBERS, ids=lambda fact: fact.id)
 def test_a_number_is_reproduced_and_a_misprint_of_it_found_out(fact: Fact) -> None:
     found = ROUTES[fact.id](True, 0)
-    assert compare(fact, found).status is Status.REPRODUCED
-    if fact.kind is Kind.DECIMAL:
+    assert compare(fact, found).status is FactStatus.REPRODUCED
+    if fact.kind is FactKind.DECIMAL:
         misprint = f"{float(fact.value) + 10.0**-fact.decimals:.{fact.decimals}f}"
     else:
         misprint = f"({fact.value})*(1 + 1/10**30)"
-    assert compare(replace(fact, value=misprint), found).status is Status.DIFFERS
+    assert compare(replace(fact, value=misprint), found).status is FactStatus.DIFFERS
 
 
 def test_a_decimal_is_reproduced_only_if_both_ends_of_the_error_round_to_it() -> None:
     fact = next(fact for fact in FACTS if fact.id == "stoss_time")
     for value, error, status in (
-        (0.8145501, 1e-9, Status.REPRODUCED),
-        (0.8145549, 1e-7, Status.REPRODUCED),
-        (0.8145549, 2e-7, Status.DIFFERS),
-        (0.8145551, 1e-9, Status.DIFFERS),
-        (math.nan, 0.0, Status.DIFFERS),
+        (0.8145501, 1e-9, FactStatus.REPRODUCED),
+        (0.8145549, 1e-7, FactStatus.REPRODUCED),
+        (0.8145549, 2e-7, FactStatus.DIFFERS),
+        (0.8145551, 1e-9, FactStatus.DIFFERS),
+        (math.nan, 0.0, FactStatus.DIFFERS),
     ):
-        assert compare(fact, Found(value=value, error=error, route="")).status is status
+        assert compare(fact, Finding(value=value, error=error, route="")).status is status
 
 
 def test_routes_that_disagree_reproduce_nothing_and_an_obstacle_is_no_agreement() -> None:
     fact = FACTS[0]
-    for gap, status in ((1e-13, Status.REPRODUCED), (1e-11, Status.DIFFERS), (math.nan, Status.DIFFERS)):
-        assert compare(fact, Found(value=sp.Rational(4, 3), route="", gap=gap)).status is status
-    blocked = Found(value=sp.Rational(4, 3), route="", obstacle="another model")
-    assert compare(fact, blocked).status is Status.NOT_REPRODUCIBLE
+    for gap, status in ((1e-13, FactStatus.REPRODUCED), (1e-11, FactStatus.DIFFERS), (math.nan, FactStatus.DIFFERS)):
+        assert compare(fact, Finding(value=sp.Rational(4, 3), route="", gap=gap)).status is status
+    blocked = Finding(value=sp.Rational(4, 3), route="", obstacle="another model")
+    assert compare(fact, blocked).status is FactStatus.NOT_REPRODUCIBLE
 
 
 @pytest.mark.parametrize(

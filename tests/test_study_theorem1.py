@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 from study_runs import load_study
 
-from painleve.asymptotics.theorem import classify
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 from painleve.store import load
 from painleve.sweep import StudyResult
+from painleve.theory.classification import classify
 
 SCENE_NAMES = load_study("theorem1").SCENES
 UNMAPPED = {f"gamma_map_spatial_rod_ellipse.{suffix}" for suffix in ("h5", "pdf", "png")}  # no one coefficient

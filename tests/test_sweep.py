@@ -10,7 +10,6 @@ import pytest
 import sympy as sp
 import xarray as xr
 
-from painleve.asymptotics.limit_set import limit_set
 from painleve.asymptotics.sample import SampleOptions, sample_distance
 from painleve.errors import InputError
 from painleve.mechanics.derive import derive
@@ -18,6 +17,7 @@ from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 from painleve.store import check_schema, load, save
 from painleve.sweep import map_gamma, map_regimes, sweep_distances, sweep_members
+from painleve.theory.limit_set import limit_set
 
 ROD, ARM = load_scene("slender_rod"), load_scene("two_link_arm")
 FEW = SampleOptions(samples=4096)

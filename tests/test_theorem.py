@@ -9,22 +9,13 @@ import pytest
 from planar_scenes import SCENE_NAMES
 
 from painleve.asymptotics.distance import Attained, Distance
-from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.sample import SampleOptions, sample_distance
-from painleve.asymptotics.theorem import (
-    Branch,
-    Classification,
-    Evidence,
-    Status,
-    Verdict,
-    classify,
-    collect,
-    judge,
-    slope,
-)
+from painleve.asymptotics.theorem import Evidence, Verdict, VerdictStatus, collect, judge, slope
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 from painleve.sets import Bounds
+from painleve.theory.classification import Branch, Classification, classify
+from painleve.theory.limit_set import LimitSet
 
 BRANCHES = {
     ("slender_rod", "sliding"): Branch.NONE,
@@ -117,7 +108,7 @@ def test_the_excess_of_a_eps_falls_like_eps_in_every_branch(scene, name):
 @pytest.mark.parametrize(("scene", "name"), REPRESENTATIVES)
 def test_sampled_evidence_is_consistent_with_the_theorem_and_claims_no_more(scene, name):
     verdict = verdict_of(scene, name)
-    assert verdict.status is Status.CONSISTENT, verdict.reason
+    assert verdict.status is VerdictStatus.CONSISTENT, verdict.reason
     assert verdict.branch is BRANCHES[scene, name]
 
 
@@ -148,7 +139,7 @@ def test_the_hard_critical_state_is_not_misjudged_though_the_sampled_bound_on_in
     assert all(b.lower is None for b in bounds)
     assert slips[0] > 4 * slips[1] > 16 * slips[2]
     verdict = judge(found, evidence)
-    assert verdict.status is Status.CONSISTENT
+    assert verdict.status is VerdictStatus.CONSISTENT
     assert abs(verdict.slope - 1.0) < 0.1
 
 
@@ -159,20 +150,20 @@ def test_a_friction_so_near_to_critical_that_eps_does_not_resolve_it_is_undecide
     assert found.branch is (Branch.NONE if nudge.startswith("-") else Branch.NEGATIVE)
     evidence = [collect(found, eps, sampled) for eps in (1e-1, 1e-2)]
     verdict = judge(found, evidence)
-    assert verdict.status is Status.UNDECIDED
+    assert verdict.status is VerdictStatus.UNDECIDED
     assert "smaller ones are needed" in verdict.reason
     # gamma ~ 1e-8: at gamma > 0 slips reach u_tilde until |v_n| <= eps is below lambda_tilde gamma
     finer = [collect(found, eps, sampled) for eps in (1e-10, 1e-11, 1e-12)]
-    assert judge(found, finer).status is Status.CONSISTENT
+    assert judge(found, finer).status is VerdictStatus.CONSISTENT
 
 
 def test_an_isolated_state_just_above_the_threshold_is_not_refuted_by_balls_that_are_too_large():
     """k = 4.467 against 25/6: at eps = 0.1 gamma > 0 still occurs, and members shadow all of A."""
     found = classification_of("worn_tip_rod", "isolated", k="4467/1000")
     evidence = [collect(found, eps, sampled) for eps in (1e-1, 8e-2)]
-    assert judge(found, evidence).status is Status.UNDECIDED
+    assert judge(found, evidence).status is VerdictStatus.UNDECIDED
     finer = [collect(found, eps, sampled) for eps in (1e-3, 1e-4)]
-    assert judge(found, finer).status is Status.CONSISTENT
+    assert judge(found, finer).status is VerdictStatus.CONSISTENT
 
 
 # --- verdicts on made-up evidence ------------------------------------------------------------------------------------
@@ -200,7 +191,7 @@ def made_up(found: Classification, eps: float, forward: Bounds, backward: Bounds
     )
 
 
-def verdict_on(state: tuple[str, str], forward, backward, ends=None) -> Status:
+def verdict_on(state: tuple[str, str], forward, backward, ends=None) -> VerdictStatus:
     """Of bounds that are functions of eps, at three eps."""
     found = classification_of(*state)
     evidence = [made_up(found, e, forward(e), backward(e), (ends or forward)(e)) for e in (1e-2, 1e-3, 1e-4)]
@@ -217,25 +208,28 @@ def test_only_enclosures_that_shrink_with_eps_prove(state):
     def nothing(e: float) -> Bounds:
         return Bounds.exactly(0.0)
 
-    assert verdict_on(state, lambda e: Bounds.between(e, 2 * e), nothing) is Status.PROVED
-    assert verdict_on(state, Bounds.at_least, nothing) is Status.CONSISTENT
-    assert verdict_on(state, lambda e: Bounds.between(e, 0.5), nothing) is Status.CONSISTENT
+    assert verdict_on(state, lambda e: Bounds.between(e, 2 * e), nothing) is VerdictStatus.PROVED
+    assert verdict_on(state, Bounds.at_least, nothing) is VerdictStatus.CONSISTENT
+    assert verdict_on(state, lambda e: Bounds.between(e, 0.5), nothing) is VerdictStatus.CONSISTENT
     assert verdict_on(state, lambda e: Bounds.between(e, 2 * e) if e > 1e-4 else Bounds.at_least(e), nothing) is (
-        Status.CONSISTENT
+        VerdictStatus.CONSISTENT
     )
 
 
 @pytest.mark.parametrize("state", POSITIVE_BRANCHES)
 def test_part_of_a_that_members_provably_miss_refutes_because_balls_are_nested(state):
-    assert verdict_on(state, lambda e: Bounds.between(e, 2 * e), lambda e: Bounds.between(0.2, 0.3)) is Status.REFUTED
-    assert verdict_on(state, Bounds.at_least, Bounds.at_least) is Status.REFUTED
+    assert (
+        verdict_on(state, lambda e: Bounds.between(e, 2 * e), lambda e: Bounds.between(0.2, 0.3))
+        is VerdictStatus.REFUTED
+    )
+    assert verdict_on(state, Bounds.at_least, Bounds.at_least) is VerdictStatus.REFUTED
     # an upper bound forbids nothing, however large
-    assert verdict_on(state, Bounds.at_least, lambda e: Bounds.at_most(0.4)) is Status.CONSISTENT
+    assert verdict_on(state, Bounds.at_least, lambda e: Bounds.at_most(0.4)) is VerdictStatus.CONSISTENT
 
 
 @pytest.mark.parametrize("state", [*POSITIVE_BRANCHES, ISOLATED])
 def test_members_that_do_not_come_nearer_decide_nothing(state):
-    assert verdict_on(state, lambda e: Bounds.at_least(0.3), lambda e: Bounds.at_most(HALF)) is Status.UNDECIDED
+    assert verdict_on(state, lambda e: Bounds.at_least(0.3), lambda e: Bounds.at_most(HALF)) is VerdictStatus.UNDECIDED
 
 
 @pytest.mark.parametrize("state", [*POSITIVE_BRANCHES, ISOLATED])
@@ -244,10 +238,10 @@ def test_missing_evidence_decides_nothing(state):
         return Bounds.unknown()
 
     found = classification_of(*state)
-    assert verdict_on(state, unknown, unknown) is Status.UNDECIDED
-    assert judge(found, []).status is Status.UNDECIDED
+    assert verdict_on(state, unknown, unknown) is VerdictStatus.UNDECIDED
+    assert judge(found, []).status is VerdictStatus.UNDECIDED
     one = made_up(found, 1e-3, Bounds.exactly(1e-3), Bounds.exactly(0.0), Bounds.exactly(1e-3))
-    assert judge(found, [one, one]).status is Status.UNDECIDED
+    assert judge(found, [one, one]).status is VerdictStatus.UNDECIDED
     assert judge(found, [one]).slope is None
 
 
@@ -256,7 +250,7 @@ def test_without_witnesses_indeterminacy_is_not_decided():
     evidence = [made_up(found, e, Bounds.exactly(e), Bounds.at_most(e), Bounds.exactly(e)) for e in (1e-2, 1e-3)]
     blind = [Evidence(eps=e.eps, distance=e.distance, ends=e.ends, witnessed=None) for e in evidence]
     verdict = judge(found, blind)
-    assert verdict.status is Status.UNDECIDED
+    assert verdict.status is VerdictStatus.UNDECIDED
     assert "no witnesses" in verdict.reason
 
 
@@ -267,20 +261,20 @@ def test_an_isolated_state_is_proved_by_enclosures_of_both_parts_of_its_statemen
     def away(e: float) -> Bounds:
         return Bounds.between(HALF - 2 * e, HALF)
 
-    assert verdict_on(ISOLATED, near_ends, away) is Status.PROVED
-    assert verdict_on(ISOLATED, near_ends, lambda e: Bounds.at_most(HALF)) is Status.CONSISTENT
-    assert verdict_on(ISOLATED, near_ends, lambda e: Bounds.between(0.0, HALF)) is Status.CONSISTENT
-    assert verdict_on(ISOLATED, Bounds.at_least, away) is Status.CONSISTENT
-    assert verdict_on(ISOLATED, near_ends, lambda e: Bounds.unknown()) is Status.UNDECIDED
-    assert verdict_on(ISOLATED, near_ends, lambda e: Bounds.at_most(0.1 * HALF)) is Status.UNDECIDED
-    assert verdict_on(ISOLATED, near_ends, lambda e: Bounds.at_least(1.1 * HALF)) is Status.REFUTED
+    assert verdict_on(ISOLATED, near_ends, away) is VerdictStatus.PROVED
+    assert verdict_on(ISOLATED, near_ends, lambda e: Bounds.at_most(HALF)) is VerdictStatus.CONSISTENT
+    assert verdict_on(ISOLATED, near_ends, lambda e: Bounds.between(0.0, HALF)) is VerdictStatus.CONSISTENT
+    assert verdict_on(ISOLATED, Bounds.at_least, away) is VerdictStatus.CONSISTENT
+    assert verdict_on(ISOLATED, near_ends, lambda e: Bounds.unknown()) is VerdictStatus.UNDECIDED
+    assert verdict_on(ISOLATED, near_ends, lambda e: Bounds.at_most(0.1 * HALF)) is VerdictStatus.UNDECIDED
+    assert verdict_on(ISOLATED, near_ends, lambda e: Bounds.at_least(1.1 * HALF)) is VerdictStatus.REFUTED
 
 
 def test_an_undecided_branch_stays_undecided_whatever_is_measured():
     found = classification_of("slender_rod", "sliding")
     undecided = Classification(branch=Branch.UNDECIDED, limit=found.limit, neighbours=None, reason="no proof")
     evidence = [made_up(undecided, e, *[Bounds.exactly(e)] * 3) for e in (1e-2, 1e-3)]
-    assert judge(undecided, evidence).status is Status.UNDECIDED
+    assert judge(undecided, evidence).status is VerdictStatus.UNDECIDED
 
 
 def test_the_slope_of_a_power_is_its_exponent_and_zeros_are_left_out():

@@ -11,14 +11,14 @@ import pytest
 from planar_scenes import SCENE_NAMES
 from reference_law import Reference, gamma_squared, law, norm, to_mp
 
-from painleve.asymptotics.limit_set import LimitSet, limit_set
 from painleve.asymptotics.local import make_local_problem
 from painleve.asymptotics.member import Member, make_member
 from painleve.asymptotics.witness import find_family, find_witness
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.errors import InputError
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
+from painleve.theory.limit_set import LimitSet, limit_set
 
 DIGITS = 110  # more than the 320 bits of the enclosures that are checked
 EPS = [1e-1, 1e-6, 1e-12]
@@ -79,7 +79,7 @@ def test_a_member_at_any_offset_is_the_law_of_the_definition_out_of_contact_too(
             found = [to_mp(x) for x in member.enclosure]
             assert norm([x - y for x, y in zip(offset, found, strict=True)]) < mpmath.mpf(10) ** -80
             out = reference_of(scene).at_state(limit.state, dq).g < 0
-        assert not out or member.branch is Branch.FREE
+        assert not out or member.branch is ContactMode.FREE
     assert len(branches) > 1
 
 
@@ -109,7 +109,7 @@ def test_both_ends_of_a_have_witnesses_at_every_state_that_is_indeterminate(scen
     assert start.distance == (0.0, 0.0) or start.distance[1] < 1e-300
     assert not start.member.dq.any()
     assert not start.member.dv.any()
-    assert end.member.branch is Branch.STICK
+    assert end.member.branch is ContactMode.STICK
     assert not end.member.dq.any()
     with mpmath.workdps(DIGITS):
         assert inside(end.member, eps)
@@ -172,7 +172,7 @@ def test_of_a_pair_no_point_but_its_ends_is_asked_for(scene, name):
         find_witness(limit, 0.5, 0.1, within=0.1)
     family = find_family(limit, 1e-6, within=1e-9)
     assert family.bound <= 1e-9
-    assert (family.first.branch, family.last.branch) == (Branch.FREE, Branch.STICK)
+    assert (family.first.branch, family.last.branch) == (ContactMode.FREE, ContactMode.STICK)
 
 
 def test_where_nothing_is_indeterminate_u_minus_is_its_own_witness():

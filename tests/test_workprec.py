@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from painleve.errors import InputError
-from painleve.workprec import Outcome, Run, measure
+from painleve.workprec import Run, RunOutcome, measure
 
 
 class Clock:
@@ -61,7 +61,7 @@ def test_a_run_that_fails_is_a_record_with_its_reason_and_the_time_it_took(error
         raise error
 
     record = measure("p", "m", 1e3, run, reference=1.0, clock=clock)
-    assert record.outcome is Outcome.FAILED
+    assert record.outcome is RunOutcome.FAILED
     assert record.sentence == str(error)
     assert record.first_seconds == 2.0
     assert math.isnan(record.error)
@@ -76,12 +76,12 @@ def test_a_programming_error_is_not_taken_for_a_failed_run():
 @pytest.mark.parametrize(
     ("value", "outcome"),
     [
-        (1.9, Outcome.DONE),
-        (2.1, Outcome.MISLEADING),
-        (0.51, Outcome.DONE),
-        (0.49, Outcome.MISLEADING),
-        (0.0, Outcome.MISLEADING),
-        (math.nan, Outcome.MISLEADING),
+        (1.9, RunOutcome.DONE),
+        (2.1, RunOutcome.MISLEADING),
+        (0.51, RunOutcome.DONE),
+        (0.49, RunOutcome.MISLEADING),
+        (0.0, RunOutcome.MISLEADING),
+        (math.nan, RunOutcome.MISLEADING),
     ],
 )
 def test_a_number_more_than_a_factor_two_off_is_misleading(value, outcome):

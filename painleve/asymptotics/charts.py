@@ -13,7 +13,7 @@ from functools import partial
 
 import numpy as np
 
-__all__ = ["Chart", "Conditions", "charts"]
+__all__ = ["Conditions", "PlaneChart", "charts"]
 
 Conditions = Callable[[np.ndarray], np.ndarray]  # (s, n) offsets -> (c, n) values, all >= 0 where there are members
 
@@ -25,25 +25,25 @@ STEPS = 16
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Chart:
+class PlaneChart:
     """A box [0, 1]^size and the offsets (s, n) of its points (size, n); NaN where there are none."""
 
     size: int
     place: Callable[[np.ndarray], np.ndarray]
 
 
-def charts(shape: int, conditions: Conditions) -> Iterator[Chart]:
+def charts(shape: int, conditions: Conditions) -> Iterator[PlaneChart]:
     """The charts for 0, 1 or 2 shape coordinates."""
     if shape == 0:
         if np.all(conditions(np.zeros((0, 1))) >= 0.0):
-            yield Chart(size=0, place=lambda box: np.zeros((0, box.shape[1])))
+            yield PlaneChart(size=0, place=lambda box: np.zeros((0, box.shape[1])))
     elif shape == 1:
         for low, high in _intervals(conditions):
-            yield Chart(size=1, place=_interval(low, high))
+            yield PlaneChart(size=1, place=_interval(low, high))
     else:
         most = max(len(arcs) for arcs in _arcs(conditions, RADII[1:]))
         for number in range(most):
-            yield Chart(size=2, place=_arc(conditions, number))
+            yield PlaneChart(size=2, place=_arc(conditions, number))
 
 
 def _interval(low: float, high: float) -> Callable[[np.ndarray], np.ndarray]:

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.member import Member
 from painleve.sets import Bounds, largest
+from painleve.theory.limit_set import LimitSet
 
 __all__ = ["Attained", "Distance"]
 

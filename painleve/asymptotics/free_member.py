@@ -7,7 +7,7 @@ import numpy as np
 
 from painleve.asymptotics.local import BITS, LocalProblem
 from painleve.asymptotics.member import Member, make_member
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 
 __all__ = ["free_member", "is_inside"]
 
@@ -20,7 +20,7 @@ def free_member(problem: LocalProblem, eps: float, *, away: bool) -> Member:
     dv = (-direction if away else direction) * (eps * (1.0 - 1e-15))
     for size in (0.5, 0.1, 1e-2, 1e-3, 1e-4):
         member = make_member(p, outward * (size * eps), dv)
-        if member.branch is Branch.FREE:
+        if member.branch is ContactMode.FREE:
             return member
     raise ArithmeticError("no configuration with g < 0 was found, yet grad g is not zero")
 

@@ -16,14 +16,14 @@ import flint
 import numpy as np
 import sympy as sp
 
-from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.space.base import space_base
 from painleve.core.space.offset import SpaceBase
 from painleve.core.space.polygon_offset import PolygonBase
 from painleve.core.taylor import Polynomials, monomial_block, polynomial_block, sparse_polynomials
+from painleve.exact.balls import ball
+from painleve.exact.jets import jets, monomials
 from painleve.kernels.compiled import Kernels, make_kernels
-from painleve.mechanics.balls import ball
-from painleve.mechanics.jets import jets, monomials
+from painleve.theory.limit_set import LimitSet
 
 __all__ = ["Arithmetic", "Expansion", "LocalProblem", "make_local_problem"]
 

@@ -15,8 +15,8 @@ import numpy as np
 
 from painleve.asymptotics.local import BITS, LocalProblem
 from painleve.asymptotics.space.member import Contact, conic_impulse, polygon_impulse
-from painleve.core.codes import Branch
-from painleve.mechanics.balls import ball, make_ball_function
+from painleve.core.codes import ContactMode
+from painleve.exact.balls import ball, make_ball_function
 
 __all__ = ["Member", "base_balls", "distance_to_point", "jump_balls", "make_member", "row_balls"]
 
@@ -35,7 +35,7 @@ class Member:
     preimage: tuple[tuple[flint.arb, ...], tuple[flint.arb, ...]]
     dq: np.ndarray
     dv: np.ndarray
-    branch: Branch
+    branch: ContactMode
     offset: np.ndarray
     distance: tuple[float, float]
     enclosure: tuple[flint.arb, ...]
@@ -114,7 +114,7 @@ def jump_balls(problem: LocalProblem) -> Balls:
     return [ball(problem.limit.state.exact(x - y), bits=BITS) for x, y in pairs]
 
 
-def _law(problem: LocalProblem, dq: Balls, dv: Balls) -> tuple[Balls, Branch]:
+def _law(problem: LocalProblem, dq: Balls, dv: Balls) -> tuple[Balls, ContactMode]:
     """S - u- and the branch, by the definition of the law, independently of the compiled kernels."""
     d, u = problem.dimension, base_balls(problem)[2]
     rows = row_balls(problem, dq)
@@ -124,19 +124,26 @@ def _law(problem: LocalProblem, dq: Balls, dv: Balls) -> tuple[Balls, Branch]:
     v_n = _dot(w_n, dv if at_base else v)
     contact = at_base or not _certain(rows[0] < 0, rows[0] >= 0, "contact")
     if not contact or _certain(v_n >= 0, v_n < 0, "the sign of v_n"):
-        return dv, Branch.FREE
+        return dv, ContactMode.FREE
     if problem.limit.state.scene.friction is None:
-        return [x - y * v_n / a for x, y in zip(dv, Y_n, strict=True)], Branch.FRICTIONLESS
+        return [x - y * v_n / a for x, y in zip(dv, Y_n, strict=True)], ContactMode.FRICTIONLESS
     if problem.limit.state.scene.friction_dimension == 2:
         return _law_in_space(problem, rows, v, v_n, dv, at_base)
     H, Y_t = rows[3 + 2 * d : 3 + 3 * d], rows[3 + 3 * d : 3 + 4 * d]
     b, C, minus, mu_plus, mu_minus = rows[3 + 4 * d :]
     plus, v_t = rows[2 + 2 * d], _dot(H, v)
     determinant = a * C - b * b
-    r_n, r_t, branch = (b * v_t - C * v_n) / determinant, (b * v_n - a * v_t) / determinant, Branch.STICK
+    r_n, r_t, branch = (b * v_t - C * v_n) / determinant, (b * v_n - a * v_t) / determinant, ContactMode.STICK
     critical = problem.critical_edge if at_base else 0
-    for sense, edge, s, slip in ((1, plus, mu_plus, Branch.SLIP_PLUS), (-1, minus, -mu_minus, Branch.SLIP_MINUS)):
-        if branch is not Branch.STICK or sense == critical or not _certain(edge > 0, edge <= 0, "the sign of gamma"):
+    for sense, edge, s, slip in (
+        (1, plus, mu_plus, ContactMode.SLIP_PLUS),
+        (-1, minus, -mu_minus, ContactMode.SLIP_MINUS),
+    ):
+        if (
+            branch is not ContactMode.STICK
+            or sense == critical
+            or not _certain(edge > 0, edge <= 0, "the sign of gamma")
+        ):
             continue
         excess = sense * (r_t * edge + s * v_n)
         if _certain(excess > 0, excess <= 0, "stick or slip"):
@@ -147,7 +154,7 @@ def _law(problem: LocalProblem, dq: Balls, dv: Balls) -> tuple[Balls, Branch]:
 
 def _law_in_space(
     problem: LocalProblem, rows: Balls, v: Balls, v_n: flint.arb, dv: Balls, at_base: bool
-) -> tuple[Balls, Branch]:
+) -> tuple[Balls, ContactMode]:
     d = problem.dimension
     H_1, H_2, Y_1, Y_2 = (rows[3 + k * d : 3 + (k + 1) * d] for k in range(2, 6))
     b_1, b_2, *C = rows[3 + 6 * d : 8 + 6 * d]

@@ -8,10 +8,10 @@ from types import MappingProxyType
 
 from painleve.asymptotics.certify.method import CertifyOptions, certify_distance
 from painleve.asymptotics.distance import Distance
-from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.optimise import OptimiseOptions, optimise_distance
 from painleve.asymptotics.sample import SampleOptions, sample_distance
 from painleve.errors import InputError
+from painleve.theory.limit_set import LimitSet
 
 __all__ = ["METHODS", "Method", "distance", "find_method"]
 

@@ -18,17 +18,17 @@ import numpy as np
 
 from painleve.asymptotics.distance import Attained, Distance
 from painleve.asymptotics.free_member import free_member, is_inside
-from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.local import BITS, Arithmetic, LocalProblem, make_local_problem
 from painleve.asymptotics.member import Member, base_balls, make_member, row_balls
 from painleve.asymptotics.sample import KINDS, check_eps
-from painleve.asymptotics.search import SLIPS, Found, Search
+from painleve.asymptotics.search import SLIPS, FarthestMember, PlaneSearch
 from painleve.asymptotics.space.optimise import optimise_in_space
 from painleve.asymptotics.witness import find_family
 from painleve.core.branch_excess import REACH
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.errors import InputError
 from painleve.sets import Bounds, excess_of_segment_from_profile
+from painleve.theory.limit_set import LimitSet
 
 __all__ = ["OptimiseOptions", "optimise_distance"]
 
@@ -69,7 +69,7 @@ def optimise_distance(limit: LimitSet, eps: float, options: OptimiseOptions | No
         )
     expansion = problem.expansion(eps, options.arithmetic)
     differences = partial(problem.differences, eps, expansion)
-    search = Search(problem, eps, KINDS[limit.kind], differences, starts=options.starts)
+    search = PlaneSearch(problem, eps, KINDS[limit.kind], differences, starts=options.starts)
     forward, estimate, error = _excess_of_members(search)
     backward, how = _excess_of_limit(search)
     evaluations = sum(search.counts.values())
@@ -96,7 +96,7 @@ def optimise_distance(limit: LimitSet, eps: float, options: OptimiseOptions | No
     )
 
 
-def _excess_of_members(search: Search) -> tuple[Attained, float, float]:
+def _excess_of_members(search: PlaneSearch) -> tuple[Attained, float, float]:
     """e(A_eps, A): the bound, the estimate of the supremum, and its estimated relative error."""
     free, found = free_member(search.problem, search.eps, away=True), search.best(search.branches, search.kind)
     if found is None or found.value <= 1.0:
@@ -108,13 +108,13 @@ def _excess_of_members(search: Search) -> tuple[Attained, float, float]:
     return Attained(bounds=Bounds.at_least(lower), member=member), estimate, error
 
 
-def _excess_of_limit(search: Search) -> tuple[Attained, str]:
+def _excess_of_limit(search: PlaneSearch) -> tuple[Attained, str]:
     """An upper bound on e(A, A_eps): from witnesses if there are any, else from the members that reach farthest."""
     problem, eps = search.problem, search.eps
     family = find_family(problem.limit, eps, within=max(SHADOW * eps, ROUNDED * problem.length))
     if family is not None:
         return Attained(bounds=Bounds.at_most(family.bound), member=family.last), "witnesses shadow all of A"
-    first, reach = free_member(problem, eps, away=False), search.best((Branch.STICK,), REACH)
+    first, reach = free_member(problem, eps, away=False), search.best((ContactMode.STICK,), REACH)
     last = _member(search, reach) if reach is not None else None
     members = [first] if last is None else [first, last]
     along = [float(m.offset @ problem.direction) for m in members]
@@ -132,7 +132,7 @@ def _above_line(problem: LocalProblem, member: Member, along: float) -> float:
     return float(np.linalg.norm(across))
 
 
-def _member(search: Search, found: Found) -> Member | None:
+def _member(search: PlaneSearch, found: FarthestMember) -> Member | None:
     """The true member nearest to what was found, nudged off the boundaries of its branch as little as it takes."""
     for nudge, tilt in sorted(product(NUDGES, repeat=2), key=sum):
         dq = _configuration(search, found, nudge, tilt)
@@ -148,7 +148,7 @@ def _member(search: Search, found: Found) -> Member | None:
     return None
 
 
-def _configuration(search: Search, found: Found, nudge: float, tilt: float) -> list[flint.arb]:
+def _configuration(search: PlaneSearch, found: FarthestMember, nudge: float, tilt: float) -> list[flint.arb]:
     """dq with as much penetration as the ball allows, and a tilt of the shape into it."""
     p = search.problem
     dq = np.zeros(p.dimension)
@@ -162,7 +162,9 @@ def _configuration(search: Search, found: Found, nudge: float, tilt: float) -> l
         return [flint.arb(float(x)) + flint.arb(float(y)) for x, y in tilted]
 
 
-def _velocity(search: Search, found: Found, dq: list[flint.arb], nudge: float, tilt: float) -> list[flint.arb]:
+def _velocity(
+    search: PlaneSearch, found: FarthestMember, dq: list[flint.arb], nudge: float, tilt: float
+) -> list[flint.arb]:
     """dv; where the tip slips, corrected so that v_n = -lam p to the last digit, however small p is."""
     p, d = search.problem, search.problem.dimension
     dv = [flint.arb(float(x)) for x in found.dv * (search.eps * (1.0 - 1e-15 - nudge))]

@@ -1,4 +1,4 @@
-"""The constant C in d_H = C eps + o(eps), from first derivatives (the project's notes, section 9); k <= 1.
+"""The constant C in d_H = C eps + o(eps), from first derivatives (docs/theory.md, section 9); k <= 1.
 In space (k = 2) the rate at gamma = 0 is the root of eps: see painleve.asymptotics.space.rates.
 
 With dq = eps xi and dv = eps eta every row enters by its value and its gradient at q, known to dozens of digits. In the
@@ -33,18 +33,18 @@ from itertools import combinations, product
 import numpy as np
 import sympy as sp
 
-from painleve.asymptotics.charts import Chart
-from painleve.asymptotics.limit_set import LimitSet
+from painleve.asymptotics.charts import PlaneChart
 from painleve.asymptotics.local import LocalProblem, make_local_problem
 from painleve.asymptotics.sample import KINDS
-from painleve.asymptotics.search import SLIPS, Found, Search
+from painleve.asymptotics.search import SLIPS, FarthestMember, PlaneSearch
 from painleve.asymptotics.space.rates import root_rate
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.errors import InputError
+from painleve.exact.signs import Sign, exact_sign
 from painleve.mechanics.derive import derive
-from painleve.mechanics.neighbourhood import Neighbourhood, neighbours
 from painleve.mechanics.scene import Scene
-from painleve.mechanics.signs import Sign, exact_sign
+from painleve.theory.limit_set import LimitSet
+from painleve.theory.neighbourhood import Neighbourhood, neighbours
 
 __all__ = ["Rate", "rate"]
 
@@ -140,7 +140,7 @@ def _in_space(limit: LimitSet, isolated: bool) -> Rate:
     )
 
 
-class _FirstOrder(Search):
+class _FirstOrder(PlaneSearch):
     """The search over the unit balls with rows that are linear in the offsets."""
 
     def __init__(self, problem: LocalProblem, isolated: bool) -> None:
@@ -150,11 +150,11 @@ class _FirstOrder(Search):
         self.gradients = _gradients(problem)
         kind = KINDS["pair" if isolated else limit.kind]
         super().__init__(problem, TINY, kind, lambda x: TINY * (self.gradients @ x), base=base)
-        self.critical = {1: Branch.SLIP_PLUS, -1: Branch.SLIP_MINUS}[limit.edge] if limit.critical else None
+        self.critical = {1: ContactMode.SLIP_PLUS, -1: ContactMode.SLIP_MINUS}[limit.edge] if limit.critical else None
         if isolated:
             self.branches = tuple(b for b in self.branches if b is not self.critical)
 
-    def charts(self, branch: Branch) -> Sequence[Chart]:
+    def charts(self, branch: ContactMode) -> Sequence[PlaneChart]:
         """On the critical edge the sign of p may be a question of second order."""
         if branch is not self.critical:
             return super().charts(branch)
@@ -166,7 +166,7 @@ class _FirstOrder(Search):
         form = _hessian(self.problem, branch)
         return self.within(lambda x: np.stack([self.contact(x), np.sum(x * (form @ x), axis=0)]))
 
-    def _along_the_constraint(self, p: np.ndarray, branch: Branch) -> Sequence[Chart]:
+    def _along_the_constraint(self, p: np.ndarray, branch: ContactMode) -> Sequence[PlaneChart]:
         """grad p = -kappa grad g. kappa < 0: p > 0 wherever g > 0. Else approached along the tangent alone."""
         g = self.gradients[0]
         if p @ g > 0.0:
@@ -174,7 +174,7 @@ class _FirstOrder(Search):
         tangent = np.array([-g[1], g[0]]) / np.linalg.norm(g)
         # On the tangent g and p vanish to first order: exactly so, not up to rounding.
         self.gradients[self.problem.kernels.rows.index(SLIPS[branch])] = 0.0
-        return [Chart(size=1, place=lambda box: tangent[:, None] * (2.0 * box[0] - 1.0))]
+        return [PlaneChart(size=1, place=lambda box: tangent[:, None] * (2.0 * box[0] - 1.0))]
 
 
 def _gradients(problem: LocalProblem) -> np.ndarray:
@@ -187,7 +187,7 @@ def _gradients(problem: LocalProblem) -> np.ndarray:
     return np.where(np.abs(full) > VANISHING * np.max(np.abs(full), initial=0.0), full, 0.0)
 
 
-def _hessian(problem: LocalProblem, branch: Branch) -> np.ndarray:
+def _hessian(problem: LocalProblem, branch: ContactMode) -> np.ndarray:
     """Second derivatives of a + s b on that edge, halved, with respect to the shape coordinates."""
     row = problem.table[problem.kernels.rows.varying.index(problem.kernels.rows.index(SLIPS[branch]))]
     form = np.zeros((len(problem.shape), len(problem.shape)))
@@ -216,14 +216,14 @@ def _parallel(limit: LimitSet) -> bool:
     return True
 
 
-def _unit_offset(problem: LocalProblem, found: Found) -> np.ndarray:
+def _unit_offset(problem: LocalProblem, found: FarthestMember) -> np.ndarray:
     dq = np.zeros(problem.dimension)
     dq[list(problem.shape)] = found.x
     return dq + problem.carried_direction * np.sqrt(max(0.0, 1.0 - float(dq @ dq)))
 
 
-def _part(limit: LimitSet, found: Found) -> str:
-    if found.branch is Branch.STICK:
+def _part(limit: LimitSet, found: FarthestMember) -> str:
+    if found.branch is ContactMode.STICK:
         return "at the end u_tilde of the segment" if limit.kind == "segment" else "sticking"
     if found.branch in SLIPS:
         return "along the segment" if limit.kind == "segment" else "slipping"

@@ -1,7 +1,7 @@
 """A_eps by sampling: streamed through compiled blocks, reproducible bit for bit on any number of threads.
 
 A sample consists of members of A_eps and proves nothing else: it bounds e(A_eps, A) from below and e(A, A_eps) from
-above (the project's notes, section 4).
+above (docs/theory.md, section 4).
 """
 
 from __future__ import annotations
@@ -14,17 +14,17 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from painleve.asymptotics.distance import Attained, Distance
-from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.local import Arithmetic, Expansion, LocalProblem, make_local_problem
 from painleve.asymptotics.member import Member, make_member
 from painleve.core.ball_maps import uniforms_needed
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.lattice import kronecker_generators, kronecker_shifts
 from painleve.core.reduce import PAIR, POINT, SEGMENT
 from painleve.core.sampling import BLOCK, Sampler
 from painleve.core.taylor import no_polynomials
 from painleve.errors import InputError
 from painleve.sets import Bounds, excess_of_segment_from_profile
+from painleve.theory.limit_set import LimitSet
 
 __all__ = ["SAMPLERS", "SampleOptions", "check_eps", "sample_distance", "sample_members"]
 
@@ -60,16 +60,16 @@ class SampleOptions:
 
 
 @dataclass
-class _Tally:
+class _SampleTally:
     """What a lane keeps, and how lanes are merged: ties go to the smaller index, so the order does not matter."""
 
-    counts: np.ndarray = field(default_factory=lambda: np.zeros(len(Branch), np.int64))
+    counts: np.ndarray = field(default_factory=lambda: np.zeros(len(ContactMode), np.int64))
     best: np.ndarray = field(default_factory=lambda: np.array([-1.0, np.inf, np.inf]))
     best_index: np.ndarray = field(default_factory=lambda: np.full(3, -1, np.int64))
     bins: np.ndarray = field(default_factory=lambda: np.full((3, BINS), np.inf))
     bin_index: np.ndarray = field(default_factory=lambda: np.full(BINS, np.iinfo(np.int64).max))
 
-    def merge(self, other: _Tally) -> None:
+    def merge(self, other: _SampleTally) -> None:
         self.counts += other.counts
         sense = np.array([-1.0, 1.0, 1.0])
         for j in range(3):
@@ -115,8 +115,8 @@ class _Stream:
             problem.critical_edge,
         )
 
-    def lane(self, first: int, blocks: int) -> _Tally:
-        tally, o, p = _Tally(), self.options, self.problem
+    def lane(self, first: int, blocks: int) -> _SampleTally:
+        tally, o, p = _SampleTally(), self.options, self.problem
         p.kernels.sample_lane(
             first,
             blocks,
@@ -200,11 +200,11 @@ def sample_distance(limit: LimitSet, eps: float, options: SampleOptions | None =
         raise InputError(f"state {limit.state.label}: no distance to a limit set that is undecided: {limit.reason}")
     problem = make_local_problem(limit)
     stream = _Stream(problem, eps, options)
-    tally = _Tally()
+    tally = _SampleTally()
     for part in _lanes(stream):
         tally.merge(part)
     farthest = stream.member(int(tally.best_index[0]))
-    counts = {b.label: int(tally.counts[b]) for b in Branch if _has(problem, b)}
+    counts = {b.label: int(tally.counts[b]) for b in ContactMode if _has(problem, b)}
     return Distance(
         limit=limit,
         eps=eps,
@@ -238,24 +238,24 @@ def sample_members(limit: LimitSet, eps: float, options: SampleOptions | None = 
     return {"dq": dq, "dv": dv, "offset": values - problem.u, "branch": branch}
 
 
-def _has(problem: LocalProblem, branch: Branch) -> bool:
+def _has(problem: LocalProblem, branch: ContactMode) -> bool:
     """Whether the scene can take that branch at all."""
     contact = {
-        0: (Branch.FRICTIONLESS,),
-        1: (Branch.STICK, Branch.SLIP_PLUS, Branch.SLIP_MINUS),
-        2: (Branch.STICK, Branch.SLIP),
+        0: (ContactMode.FRICTIONLESS,),
+        1: (ContactMode.STICK, ContactMode.SLIP_PLUS, ContactMode.SLIP_MINUS),
+        2: (ContactMode.STICK, ContactMode.SLIP),
     }
-    return branch is Branch.FREE or branch in contact[problem.limit.state.scene.friction_dimension]
+    return branch is ContactMode.FREE or branch in contact[problem.limit.state.scene.friction_dimension]
 
 
-def _lanes(stream: _Stream) -> Iterable[_Tally]:
+def _lanes(stream: _Stream) -> Iterable[_SampleTally]:
     """Tallies of all lanes, on threads, with a bounded number in flight."""
     options = stream.options
     blocks = -(-options.samples // BLOCK)
     starts = iter(range(0, blocks, LANE_BLOCKS))
     threads = options.threads or os.cpu_count() or 1
     with ThreadPoolExecutor(threads) as pool:
-        pending: set[Future[_Tally]] = set()
+        pending: set[Future[_SampleTally]] = set()
         while True:
             for first in starts:
                 pending.add(pool.submit(stream.lane, first, min(LANE_BLOCKS, blocks - first)))
@@ -271,7 +271,7 @@ def _lanes(stream: _Stream) -> Iterable[_Tally]:
                 yield tally
 
 
-def _excess_of_limit(stream: _Stream, tally: _Tally) -> Attained:
+def _excess_of_limit(stream: _Stream, tally: _SampleTally) -> Attained:
     """An upper bound on e(A, A_eps) from the samples nearest to A, exact for those samples."""
     problem = stream.problem
     if problem.limit.kind == "segment":

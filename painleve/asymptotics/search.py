@@ -13,33 +13,33 @@ from itertools import product
 
 import numpy as np
 
-from painleve.asymptotics.charts import Chart, Conditions, charts
+from painleve.asymptotics.charts import Conditions, PlaneChart, charts
 from painleve.asymptotics.local import LocalProblem
 from painleve.core.branch_excess import REACH, branch_excesses
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 
-__all__ = ["SLIPS", "Found", "Search"]
+__all__ = ["SLIPS", "FarthestMember", "PlaneSearch"]
 
 GRIDS = {0: 1, 1: 33, 2: 9, 3: 9}  # points an axis of a box of that size
 LAST_STEP = 2.0**-36
 MOST_ROUNDS = 400  # for places from which a top is approached slowly; the second search shows what was left
 PROGRESS = 1e-15  # relative; less is rounding, on which a search could wander for ever
-SLIPS = {Branch.SLIP_PLUS: "edge_plus", Branch.SLIP_MINUS: "edge_minus"}
+SLIPS = {ContactMode.SLIP_PLUS: "edge_plus", ContactMode.SLIP_MINUS: "edge_minus"}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Found:
+class FarthestMember:
     """The best place of a search: value in units of eps, where, and what a second search from there added."""
 
     value: float
-    branch: Branch
+    branch: ContactMode
     x: np.ndarray
     dv: np.ndarray
     impulse: float
     error: float
 
 
-class Search:
+class PlaneSearch:
     """The ball around one state, in units of its radius."""
 
     def __init__(
@@ -57,20 +57,20 @@ class Search:
         self.problem, self.eps, self.kind, self.differences = problem, eps, kind, differences
         self.base, self.starts = problem.base if base is None else base, starts
         planar = problem.limit.state.scene.friction is not None
-        self.branches: tuple[Branch, ...] = (Branch.STICK, *SLIPS) if planar else (Branch.FRICTIONLESS,)
-        self.counts = {b.label: 0 for b in (Branch.FREE, *self.branches)}
+        self.branches: tuple[ContactMode, ...] = (ContactMode.STICK, *SLIPS) if planar else (ContactMode.FRICTIONLESS,)
+        self.counts = {b.label: 0 for b in (ContactMode.FREE, *self.branches)}
 
     def contact(self, x: np.ndarray) -> np.ndarray:
         """The largest g/eps that the offsets x leave room for."""
         room = self.problem.carried * np.sqrt(np.maximum(0.0, 1.0 - np.sum(x * x, axis=0)))
         return self.differences(x)[0] / self.eps + room
 
-    def edge(self, branch: Branch, x: np.ndarray) -> np.ndarray:
+    def edge(self, branch: ContactMode, x: np.ndarray) -> np.ndarray:
         """a + s b on the branch's edge of the cone."""
         row = self.problem.kernels.rows.index(SLIPS[branch])
         return self.base[row] + self.differences(x)[row]
 
-    def charts(self, branch: Branch) -> Sequence[Chart]:
+    def charts(self, branch: ContactMode) -> Sequence[PlaneChart]:
         """Where the branch has members, over its shape offsets."""
 
         def conditions(x: np.ndarray) -> np.ndarray:
@@ -80,12 +80,12 @@ class Search:
 
         return self.within(conditions)
 
-    def within(self, conditions: Conditions) -> Sequence[Chart]:
+    def within(self, conditions: Conditions) -> Sequence[PlaneChart]:
         """Charts of the offsets at which all conditions are >= 0."""
         return list(charts(len(self.problem.shape), conditions))
 
     def values(
-        self, branch: Branch, chart: Chart, box: np.ndarray, kind: int
+        self, branch: ContactMode, chart: PlaneChart, box: np.ndarray, kind: int
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Value, shape offset, dv/eps and impulse at points (chart.size [+ 1], n) of the box."""
         p, x = self.problem, chart.place(box)
@@ -117,12 +117,12 @@ class Search:
         wide[:-1, known], wide[-1, known] = dv, impulse
         return all_values, x, wide[:-1], wide[-1]
 
-    def best(self, branches: Sequence[Branch], kind: int) -> Found | None:
+    def best(self, branches: Sequence[ContactMode], kind: int) -> FarthestMember | None:
         """The best place of all charts of the branches."""
         found = [self.search(b, chart, kind) for b in branches for chart in self.charts(b)]
         return max((f for f in found if f is not None), key=lambda f: f.value, default=None)
 
-    def search(self, branch: Branch, chart: Chart, kind: int) -> Found | None:
+    def search(self, branch: ContactMode, chart: PlaneChart, kind: int) -> FarthestMember | None:
         """The best place of one chart; None where it holds no member."""
         size = chart.size + (branch in SLIPS)
         axis = np.linspace(0.0, 1.0, GRIDS[size])
@@ -135,7 +135,7 @@ class Search:
         top = first[:, [int(np.argmax(first[-1]))]]
         again = self._refine(branch, chart, top[:-1], 1e-3 if size else 0.0, kind)
         value, x, dv, impulse = self.values(branch, chart, again[:-1], kind)
-        return Found(
+        return FarthestMember(
             value=float(value[0]),
             branch=branch,
             x=x[:, 0],
@@ -144,7 +144,7 @@ class Search:
             error=abs(float(again[-1, 0] - top[-1, 0])),
         )
 
-    def _refine(self, branch: Branch, chart: Chart, places: np.ndarray, step: float, kind: int) -> np.ndarray:
+    def _refine(self, branch: ContactMode, chart: PlaneChart, places: np.ndarray, step: float, kind: int) -> np.ndarray:
         """Move each place to the best point of a stencil, which grows on a slope and shrinks at a top."""
         size, n = places.shape
         stencil = _lattice(np.array([0.0, -1.0, 1.0]), size)

@@ -1,4 +1,4 @@
-"""Theorem 1 (paper, section 3): which branch holds at a state, and what measured distances say of its statement."""
+"""Theorem 1 (paper, section 3): what measured distances say of the statement of the branch that holds at a state."""
 
 from __future__ import annotations
 
@@ -9,13 +9,12 @@ from enum import Enum
 import numpy as np
 
 from painleve.asymptotics.distance import Distance
-from painleve.asymptotics.limit_set import LimitSet, limit_set
 from painleve.asymptotics.witness import find_family
-from painleve.mechanics.neighbourhood import Neighbourhood, Neighbours, neighbours
-from painleve.mechanics.state import State
 from painleve.sets import Bounds
+from painleve.theory.classification import Branch, Classification
+from painleve.theory.limit_set import LimitSet
 
-__all__ = ["Branch", "Classification", "Evidence", "Status", "Verdict", "classify", "collect", "judge", "slope"]
+__all__ = ["Evidence", "Verdict", "VerdictStatus", "collect", "judge", "slope"]
 
 SHADOW = 1e-3  # how near, in units of eps, the witnesses of eq. (10) are asked to come
 ROUNDING = 1e-12  # relative, of half the segment's length as it is compared with bounds
@@ -25,69 +24,13 @@ LEAST_SLOPE, LEAST_SLOPE_OF_ROOT = 0.5, 0.4
 RATES_PART = 0.75  # half-way between the two
 
 
-class Branch(Enum):
-    """Branches of Theorem 1; NONE where nothing is indeterminate: gamma > 0, or u_tilde = u-."""
-
-    NONE = "none"
-    NEGATIVE = "negative"
-    CRITICAL_APPROACHED = "critical_approached"
-    CRITICAL_ISOLATED = "critical_isolated"
-    UNDECIDED = "undecided"
-
-
-STATEMENTS = {
-    Branch.NONE: "A = {u-}, and A_eps tends to it",
-    Branch.NEGATIVE: "d_H(A, A_eps) -> 0 with A = {u-, u_tilde}",
-    Branch.CRITICAL_APPROACHED: "d_H(A, A_eps) -> 0 with A = [u-, u_tilde]",
-    Branch.CRITICAL_ISOLATED: "d_H({u-, u_tilde}, A_eps) -> 0, and d_H([u-, u_tilde], A_eps) -> |u_tilde - u-|/2",
-    Branch.UNDECIDED: "no branch is decided",
-}
-
-_CRITICAL = {
-    Neighbourhood.APPROACHED: Branch.CRITICAL_APPROACHED,
-    Neighbourhood.ISOLATED: Branch.CRITICAL_ISOLATED,
-    Neighbourhood.UNDECIDED: Branch.UNDECIDED,
-}
-
-
-class Status(Enum):
+class VerdictStatus(Enum):
     """What is known of a statement. PROVED: every bound that it needs is decided on both sides."""
 
     PROVED = "proved"
     CONSISTENT = "consistent"
     REFUTED = "refuted"
     UNDECIDED = "undecided"
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Classification:
-    """The branch at a state, decided in exact arithmetic, its limit set, and why."""
-
-    branch: Branch
-    limit: LimitSet
-    neighbours: Neighbours | None
-    reason: str
-
-    @property
-    def statement(self) -> str:
-        return STATEMENTS[self.branch]
-
-    def as_dict(self) -> dict[str, object]:
-        limit = self.limit
-        return {
-            "scene": limit.state.scene.name,
-            "state": limit.state.label,
-            "branch": self.branch.value,
-            "reason": self.reason,
-            "statement": self.statement,
-            "gamma": limit.gamma_value,
-            "sign_of_gamma": limit.gamma.sign.name.lower(),
-            "u_minus": limit.u_minus.tolist(),
-            "u_tilde": limit.u_plus.tolist(),
-            "limit_set": limit.kind if limit.kind != "undecided" else None,
-            "q": [limit.state.number(x) for x in limit.state.q],
-            "parameters": {name: limit.state.number(x) for name, x in limit.state.parameters.items()},
-        }
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -106,22 +49,9 @@ class Verdict:
     """What distances at several eps say of the branch's statement; slope: of log e(A_eps, A) against log eps."""
 
     branch: Branch
-    status: Status
+    status: VerdictStatus
     reason: str
     slope: float | None
-
-
-def classify(state: State) -> Classification:
-    """The branch of Theorem 1 at an exact state: exact signs of gamma at q and near q, or an undecided one."""
-    limit = limit_set(state)
-    if limit.kind == "point":
-        return Classification(branch=Branch.NONE, limit=limit, neighbours=None, reason=limit.reason)
-    if limit.kind == "undecided":
-        return Classification(branch=Branch.UNDECIDED, limit=limit, neighbours=None, reason=limit.reason)
-    if limit.kind == "pair":
-        return Classification(branch=Branch.NEGATIVE, limit=limit, neighbours=None, reason=limit.reason)
-    near = neighbours(state, limit.edge)
-    return Classification(branch=_CRITICAL[near.kind], limit=limit, neighbours=near, reason=f"gamma = 0; {near.reason}")
 
 
 def collect(classification: Classification, eps: float, measure: Callable[[LimitSet, float], Distance]) -> Evidence:
@@ -153,16 +83,18 @@ def _forward(classification: Classification, evidence: Evidence) -> Bounds:
     return (evidence.ends if isolated else evidence.distance).excess_Aeps_A.bounds
 
 
-def _status(classification: Classification, evidence: Sequence[Evidence], rate: float | None) -> tuple[Status, str]:
+def _status(
+    classification: Classification, evidence: Sequence[Evidence], rate: float | None
+) -> tuple[VerdictStatus, str]:
     if classification.branch is Branch.UNDECIDED:
-        return Status.UNDECIDED, classification.reason
+        return VerdictStatus.UNDECIDED, classification.reason
     forbidden = _forbidden(classification, evidence)
     if forbidden is not None:
-        return Status.REFUTED, forbidden
+        return VerdictStatus.REFUTED, forbidden
     if rate is None:
-        return Status.UNDECIDED, "distances at two values of eps at least are needed"
+        return VerdictStatus.UNDECIDED, "distances at two values of eps at least are needed"
     if rate < _least_slope(classification):
-        return Status.UNDECIDED, (
+        return VerdictStatus.UNDECIDED, (
             f"members of A_eps have not come nearer at these eps (eps^{rate:.2f}): "
             "smaller ones are needed, or they stay away"
         )
@@ -170,11 +102,11 @@ def _status(classification: Classification, evidence: Sequence[Evidence], rate: 
         return _isolated_status(classification, evidence)
     missing = [e.eps for e in evidence if e.witnessed is None]
     if missing:
-        return Status.UNDECIDED, f"no witnesses of e(A, A_eps) -> 0 were found at eps = {missing[0]:g}"
+        return VerdictStatus.UNDECIDED, f"no witnesses of e(A, A_eps) -> 0 were found at eps = {missing[0]:g}"
     if _enclosed(classification, evidence):
-        return Status.PROVED, "both excesses are enclosed at every eps, and witnesses shadow all of A"
+        return VerdictStatus.PROVED, "both excesses are enclosed at every eps, and witnesses shadow all of A"
     near = "eps" if rate is None or rate > RATES_PART else "the root of eps"
-    return Status.CONSISTENT, f"members of A_eps come as near to A as {near}, and witnesses shadow all of A"
+    return VerdictStatus.CONSISTENT, f"members of A_eps come as near to A as {near}, and witnesses shadow all of A"
 
 
 def _forbidden(classification: Classification, evidence: Sequence[Evidence]) -> str | None:
@@ -188,21 +120,27 @@ def _forbidden(classification: Classification, evidence: Sequence[Evidence]) -> 
     return None
 
 
-def _isolated_status(classification: Classification, evidence: Sequence[Evidence]) -> tuple[Status, str]:
+def _isolated_status(classification: Classification, evidence: Sequence[Evidence]) -> tuple[VerdictStatus, str]:
     """e(A, A_eps) must tend to half the segment's length: members near the ends come no nearer."""
     half = _half(classification)
     last = min(evidence, key=lambda e: e.eps)
     backward = last.distance.excess_A_Aeps.bounds
     if backward.upper is None and backward.lower is None:
-        return Status.UNDECIDED, "nothing is known of e(A, A_eps)"
+        return VerdictStatus.UNDECIDED, "nothing is known of e(A, A_eps)"
     if backward.upper is not None and backward.upper < half / 2.0:
-        return Status.UNDECIDED, (
+        return VerdictStatus.UNDECIDED, (
             f"at eps = {last.eps:g} all of A is still within {backward.upper:.3g} of A_eps: "
             "smaller ones are needed, or q is not isolated"
         )
     if _enclosed(classification, evidence) and all(_middle_is_away(half, e) for e in evidence):
-        return Status.PROVED, f"enclosures at every eps: A_eps tends to the ends of A, the middle stays {half:.6g} away"
-    return Status.CONSISTENT, f"members near the ends of A only are found; the middle of A is {half:.6g} away from them"
+        return (
+            VerdictStatus.PROVED,
+            f"enclosures at every eps: A_eps tends to the ends of A, the middle stays {half:.6g} away",
+        )
+    return (
+        VerdictStatus.CONSISTENT,
+        f"members near the ends of A only are found; the middle of A is {half:.6g} away from them",
+    )
 
 
 def _half(classification: Classification) -> float:

@@ -15,12 +15,12 @@ from functools import partial
 import flint
 import numpy as np
 
-from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.local import BITS, LocalProblem, make_local_problem
 from painleve.asymptotics.member import Member, base_balls, distance_to_point, make_member, row_balls
 from painleve.asymptotics.space.witness import path_bound, path_members
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.errors import InputError
+from painleve.theory.limit_set import LimitSet
 
 __all__ = ["Family", "Witness", "find_family", "find_witness"]
 
@@ -256,7 +256,7 @@ def _family_over(problem: LocalProblem, dq: list[flint.arb], eps: float) -> Fami
     """Members over one configuration from lambda_bar = 0+ to nearly lambda_tilde, all of them slipping."""
     if _in_space(problem):
         return _path_over(problem, dq, eps)
-    slip = Branch.SLIP_PLUS if problem.limit.edge == 1 else Branch.SLIP_MINUS
+    slip = ContactMode.SLIP_PLUS if problem.limit.edge == 1 else ContactMode.SLIP_MINUS
     size = max(abs(float(x.mid())) for x in dq)
     first = _slipping_member(problem, dq, size, eps)
     if first is None or first.branch is not slip:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from painleve.cli.common import add_command, add_json, add_scene, add_state, assignments, print_json, read_state
 
 if TYPE_CHECKING:
-    from painleve.asymptotics.hypotheses import HypothesesCheck
+    from painleve.theory.hypotheses.check import HypothesesCheck
 
 WIDTH = 118
 
@@ -34,7 +34,7 @@ def register(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from painleve.asymptotics.hypotheses import DEFAULT_RADIUS, check_hypotheses
+    from painleve.theory.hypotheses.check import DEFAULT_RADIUS, check_hypotheses
 
     radius = DEFAULT_RADIUS if options.radius is None else options.radius
     if options.state:

@@ -22,7 +22,7 @@ def register(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from painleve.asymptotics.theorem import classify
+    from painleve.theory.classification import classify
 
     found = classify(read_state(options))
     if options.json:

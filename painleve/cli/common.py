@@ -90,7 +90,7 @@ def read_state(options: argparse.Namespace) -> State:
 
 def _note_degrees(scene: Scene, given: Mapping[str, str]) -> None:
     """One line on stderr for an angle beyond a full turn: allowed, and likely to be degrees."""
-    from painleve.mechanics.parse import parse_number
+    from painleve.exact.parse import parse_number
 
     for key in scene.keys:
         if key.unit == "rad" and key.name in given and abs(parse_number(given[key.name], where=key.name)) > 2 * math.pi:

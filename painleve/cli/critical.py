@@ -11,7 +11,7 @@ from painleve.errors import InputError
 if TYPE_CHECKING:
     from flint import arb
 
-    from painleve.asymptotics.critical import CriticalState, CriticalStates
+    from painleve.theory.critical import CriticalState, CriticalStates
 
 LONG = 60  # characters of a closed form that is printed for a person
 
@@ -33,8 +33,8 @@ def register(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from painleve.asymptotics.critical import critical_states
     from painleve.mechanics.library import load_scene
+    from painleve.theory.critical import critical_states
 
     scene = load_scene(options.scene)
     names = [word for word in options.state if "=" not in word]

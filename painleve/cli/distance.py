@@ -28,11 +28,11 @@ def register(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from painleve.asymptotics.limit_set import limit_set
     from painleve.asymptotics.methods import distance
     from painleve.asymptotics.sample import check_eps
     from painleve.asymptotics.theorem import SHADOW
     from painleve.asymptotics.witness import find_family
+    from painleve.theory.limit_set import limit_set
 
     eps = check_eps(options.eps)
     limit = limit_set(read_state(options))

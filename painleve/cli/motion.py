@@ -63,7 +63,7 @@ def read_start(options: argparse.Namespace) -> Start | State:
 
 def read_options(options: argparse.Namespace) -> dict[str, float]:
     """The scheme's options as floats."""
-    from painleve.mechanics.parse import exact_number
+    from painleve.exact.parse import exact_number
 
     given = assignments(options.scheme_options, "--option")
     return {name: float(exact_number(value, where=f"--option {name}")) for name, value in given.items()}

@@ -25,8 +25,8 @@ def register(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from painleve.asymptotics.limit_set import limit_set
     from painleve.asymptotics.rates import rate
+    from painleve.theory.limit_set import limit_set
 
     found = rate(limit_set(read_state(options)))
     if options.json:

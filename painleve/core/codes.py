@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-__all__ = ["Branch"]
+__all__ = ["ContactMode"]
 
 
-class Branch(IntEnum):
+class ContactMode(IntEnum):
     """Branches of S(q, v) (paper, section 2)."""
 
     FREE = 0  # v in V(q): no contact, or v does not point outward; S = v

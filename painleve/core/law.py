@@ -1,4 +1,4 @@
-"""Moreau's contact law S in contact coordinates, one point at a time (the project's notes, section 2).
+"""Moreau's contact law S in contact coordinates, one point at a time (docs/theory.md, section 2).
 
 With G = [[a, b], [b, C]] and the contact velocity (v_n, v_t), v_n < 0, the feasible impulses (1, s) lambda that
 cancel the normal velocity form an interval of the line a r_n + b r_t = -v_n. The kinetic energy restricted to that
@@ -6,10 +6,12 @@ line is a parabola with its least value at the sticking impulse, so S is a clamp
 """
 
 from painleve._jit import jit
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 
-FREE, STICK, SLIP_PLUS, SLIP_MINUS = (int(b) for b in (Branch.FREE, Branch.STICK, Branch.SLIP_PLUS, Branch.SLIP_MINUS))
-FRICTIONLESS = int(Branch.FRICTIONLESS)
+FREE, STICK, SLIP_PLUS, SLIP_MINUS = (
+    int(b) for b in (ContactMode.FREE, ContactMode.STICK, ContactMode.SLIP_PLUS, ContactMode.SLIP_MINUS)
+)
+FRICTIONLESS = int(ContactMode.FRICTIONLESS)
 
 
 @jit

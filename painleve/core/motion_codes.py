@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-__all__ = ["Change", "Ending", "FixedStep", "Outcome"]
+__all__ = ["Change", "Ending", "FixedStep", "MemberOutcome"]
 
 
 class FixedStep(IntEnum):
@@ -65,7 +65,7 @@ _SENTENCES = {
 }
 
 
-class Outcome(IntEnum):
+class MemberOutcome(IntEnum):
     """The first thing that happens to a member of an ensemble."""
 
     JUMP = 0  # a velocity jump without collision

@@ -14,12 +14,12 @@ sticking may solve it too; r = 0, the least impulse, is taken and `solutions` co
 import math
 
 from painleve._jit import jit
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.law import planar_impulse, stick_impulse
 from painleve.core.motion_codes import Change
 
-FREE, STICK = int(Branch.FREE), int(Branch.STICK)
-FRICTIONLESS = int(Branch.FRICTIONLESS)
+FREE, STICK = int(ContactMode.FREE), int(ContactMode.STICK)
+FRICTIONLESS = int(ContactMode.FRICTIONLESS)
 ORDINARY, IMPACT, FRICTIONAL_IMPACT = int(Change.ORDINARY), int(Change.IMPACT), int(Change.FRICTIONAL_IMPACT)
 JUMP_WITHOUT_COLLISION = int(Change.JUMP_WITHOUT_COLLISION)
 

@@ -12,7 +12,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from scipy.optimize import brentq
 
-__all__ = ["Dense", "Event", "Place", "follow"]
+__all__ = ["ArcPoint", "Dense", "Event", "follow"]
 
 ROOT_TOLERANCE = 4 * np.finfo(float).eps  # of the time of an event, as in solve_ivp
 
@@ -20,7 +20,7 @@ Event = Callable[[float, np.ndarray], float]
 Dense = Callable[[float | np.ndarray], np.ndarray]  # t (n,) to y (m, n)
 
 
-class Place(NamedTuple):
+class ArcPoint(NamedTuple):
     """A time and the state there: one value, so that no interruption can come between the two."""
 
     t: float
@@ -38,7 +38,7 @@ class Solver(Protocol):
     def dense_output(self) -> Dense: ...
 
 
-def follow(solver: Solver, events: Sequence[Event], accept: Callable[[Place, Dense], None]) -> int | None:
+def follow(solver: Solver, events: Sequence[Event], accept: Callable[[ArcPoint, Dense], None]) -> int | None:
     """Integrate until an event function falls through zero; returns its index, or None at the end or at a failure.
 
     After every step `accept` gets the new place and the interpolant of the step; a step with an event ends there. A
@@ -50,13 +50,13 @@ def follow(solver: Solver, events: Sequence[Event], accept: Callable[[Place, Den
         solver.step()
         if solver.status == "failed":
             return None
-        dense, place = solver.dense_output(), Place(solver.t, solver.y)
+        dense, place = solver.dense_output(), ArcPoint(solver.t, solver.y)
         old, values = values, [event(*place) for event in events]
         fallen = [i for i, pair in enumerate(zip(old, values, strict=True)) if pair[0] >= 0.0 >= pair[1]]
         if fallen:
             times = [_root(events[i], dense, (before, old[i]), (place.t, values[i])) for i in fallen]
             first = int(np.argmin(times))
-            accept(Place(times[first], dense(times[first])), dense)
+            accept(ArcPoint(times[first], dense(times[first])), dense)
             return fallen[first]
         accept(place, dense)
     return None

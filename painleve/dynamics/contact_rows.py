@@ -30,7 +30,7 @@ def responses(motion: Motion, rows: np.ndarray) -> list[np.ndarray]:
 
 
 def gamma_along(motion: Motion, rows: np.ndarray) -> np.ndarray:
-    """gamma (n,), the least normal compliance over |grad g|^2 (the project's notes, section 1)."""
+    """gamma (n,), the least normal compliance over |grad g|^2 (docs/theory.md, section 1)."""
     d, friction = motion.scene.dimension, motion.scene.friction
     if isinstance(friction, Polygon):
         first = motion.rows.index("p_1")

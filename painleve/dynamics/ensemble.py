@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from painleve.core.ball_maps import uniform_ball, uniforms_needed
-from painleve.core.motion_codes import Ending, Outcome
+from painleve.core.motion_codes import Ending, MemberOutcome
 from painleve.core.streams import uniform_block
 from painleve.dynamics.grid import check_step, check_until
 from painleve.dynamics.scheme import Stepped
@@ -55,7 +55,7 @@ class Ensemble:
     start: Start
     scheme: str
     settings: Mapping[str, object]
-    counts: Mapping[Outcome, int]
+    counts: Mapping[MemberOutcome, int]
     jump_time: tuple[float, float, float] | None
     resolution: float
     steps: int
@@ -67,10 +67,10 @@ class Ensemble:
         """Members that ran."""
         return sum(self.counts.values())
 
-    def fraction(self, outcome: Outcome) -> float:
+    def fraction(self, outcome: MemberOutcome) -> float:
         return self.counts[outcome] / self.count if self.count else math.nan
 
-    def interval(self, outcome: Outcome) -> tuple[float, float]:
+    def interval(self, outcome: MemberOutcome) -> tuple[float, float]:
         """Wilson's 95 % confidence interval for the probability of an outcome."""
         return wilson_interval(self.fraction(outcome), self.count) if self.count else (0.0, 1.0)
 
@@ -98,19 +98,19 @@ def wilson_interval(fraction: float, n: float) -> tuple[float, float]:
 
 
 @dataclass
-class _Tally:
+class _EnsembleTally:
     """What is kept of the members; sums, least and greatest values do not depend on the order."""
 
-    counts: np.ndarray = field(default_factory=lambda: np.zeros(len(Outcome), np.int64))
+    counts: np.ndarray = field(default_factory=lambda: np.zeros(len(MemberOutcome), np.int64))
     histogram: np.ndarray = field(default_factory=lambda: np.zeros(BINS, np.int64))
     first: float = math.inf
     last: float = -math.inf
     steps: int = 0
 
     def add(self, outcome: np.ndarray, time: np.ndarray, steps: np.ndarray, bins: np.ndarray) -> None:
-        self.counts += np.bincount(outcome, minlength=len(Outcome))
+        self.counts += np.bincount(outcome, minlength=len(MemberOutcome))
         self.steps += int(steps.sum())
-        jumps = outcome == Outcome.JUMP
+        jumps = outcome == MemberOutcome.JUMP
         if jumps.any():
             self.histogram += np.bincount(bins[jumps], minlength=BINS)
             self.first, self.last = min(self.first, time[jumps].min()), max(self.last, time[jumps].max())
@@ -259,7 +259,7 @@ def _check_difference(task: _Task) -> None:
 def _collect(task: _Task, threads: int | None, keep: bool, progress: Callable[[int], None] | None) -> Ensemble:
     if threads is not None and threads < 1:
         raise InputError(f"threads: {threads} must be at least 1")
-    tally, ending = _Tally(), Ending.REACHED_END
+    tally, ending = _EnsembleTally(), Ending.REACHED_END
     width = (task.until or 1.0) / (BINS - 1)  # a jump may come up to one step after the end: the last bin
     kept = _empty_members(task.count) if keep else None
     lanes = _lanes(task, threads or os.cpu_count() or 1)
@@ -284,7 +284,7 @@ def _collect(task: _Task, threads: int | None, keep: bool, progress: Callable[[i
         steps=tally.steps,
         resolution=width,
         members=kept,
-        counts={o: int(tally.counts[o]) for o in Outcome if o is not Outcome.NOT_RUN},
+        counts={o: int(tally.counts[o]) for o in MemberOutcome if o is not MemberOutcome.NOT_RUN},
         jump_time=_jump_time(tally, task.start.t, width),
         settings={
             "step": task.step,
@@ -302,13 +302,13 @@ def _empty_members(count: int) -> Members:
     """Room for all members, none of which has run."""
     return Members(
         step=np.full(count, np.nan),
-        outcome=np.full(count, int(Outcome.NOT_RUN), np.int8),
+        outcome=np.full(count, int(MemberOutcome.NOT_RUN), np.int8),
         time=np.full(count, np.nan),
         steps=np.zeros(count, np.int64),
     )
 
 
-def _jump_time(tally: _Tally, start: float, width: float) -> tuple[float, float, float] | None:
+def _jump_time(tally: _EnsembleTally, start: float, width: float) -> tuple[float, float, float] | None:
     jumps = int(tally.histogram.sum())
     if jumps == 0:
         return None

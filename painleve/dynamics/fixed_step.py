@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Ending
-from painleve.dynamics.grid import Grid
+from painleve.dynamics.grid import TimeGrid
 from painleve.dynamics.start import Start
 from painleve.dynamics.trajectory import Trajectory
 
@@ -23,7 +23,7 @@ def run_fixed_step(
     theta: float,
     lag: float,
     start: Start,
-    grid: Grid,
+    grid: TimeGrid,
     tolerance: float,
     progress: Callable[[float], None],
 ) -> Trajectory:
@@ -60,7 +60,7 @@ def run_fixed_step(
     except KeyboardInterrupt:
         ending = Ending.INTERRUPTED
     kept = slice(0, done + 1)
-    statistics = {b.label: int((branch[1 : done + 1] == b).sum()) for b in Branch}
+    statistics = {b.label: int((branch[1 : done + 1] == b).sum()) for b in ContactMode}
     if k < 2:  # in space other solutions of Coulomb's law are not counted
         statistics["steps_with_several_solutions"] = int((several[kept] > 1).sum())
     return Trajectory(

@@ -2,7 +2,7 @@
 
 With alpha = m l^2/I and t = tan(theta): gamma = 0 at t^2 - mu alpha t + 1 + alpha = 0 (lower edge), the normal
 acceleration of the tip without contact force, beta = l omega^2 sin(theta) - gravity, vanishes at the same time,
-and the eigenvalues of the slip in the time dt/p have the ratio r = 2 t^2/(1 + alpha - t^2) (the project's notes,
+and the eigenvalues of the slip in the time dt/p have the ratio r = 2 t^2/(1 + alpha - t^2) (docs/theory.md,
 section 6; F. Génot and B. Brogliato, Eur. J. Mech. A Solids 18 (1999) 653-677). K, D, c: see painleve.core.jam_map.
 """
 

@@ -2,7 +2,7 @@
 
 The graph of a velocity is the polyline through (t_i, u_i). Where one instant stands twice, a vertical segment fills in
 the jump between the two velocities; a jump within a step is filled in by a segment that leans over by that step. The
-distance is that of Hausdorff, as the project's notes, section 7, take it from M. D. P. Monteiro Marques, Differential
+distance is that of Hausdorff, as docs/theory.md, section 7, takes it from M. D. P. Monteiro Marques, Differential
 Inclusions in Nonsmooth Mechanical Problems, 1993, and V. Acary; the Euclidean norm adds seconds and velocities as they
 come, in the units of the scene.
 """

@@ -10,13 +10,13 @@ import numpy as np
 
 from painleve.errors import InputError
 
-__all__ = ["Grid", "check_step", "check_until", "make_grid"]
+__all__ = ["TimeGrid", "check_step", "check_until", "make_grid"]
 
 MOST_STEPS = 10_000_000  # about a gigabyte of trajectory
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Grid:
+class TimeGrid:
     """Steps h (n,) and instants t (n + 1,) from t[0]; t[n] is the first instant at or after the end."""
 
     t: np.ndarray
@@ -39,7 +39,7 @@ def check_until(until: float) -> float:
     return value
 
 
-def make_grid(start: float, step: float | Sequence[float] | np.ndarray, until: float) -> Grid:
+def make_grid(start: float, step: float | Sequence[float] | np.ndarray, until: float) -> TimeGrid:
     """Instants that cover [start, start + until]: equal steps, or the given ones.
 
     Raises InputError for steps that are not positive, that do not reach the end, or that are too many to keep.
@@ -53,7 +53,7 @@ def make_grid(start: float, step: float | Sequence[float] | np.ndarray, until: f
                 f"step: {until:g}/{h:g} is more than {MOST_STEPS} steps, too many to keep; "
                 "take larger steps or a shorter time"
             )
-        return Grid(t=start + h * np.arange(count + 1), h=np.full(count, h))
+        return TimeGrid(t=start + h * np.arange(count + 1), h=np.full(count, h))
     steps = np.asarray(step, float)
     if steps.ndim != 1 or not (np.isfinite(steps).all() and (steps > 0.0).all()):
         raise InputError("step: every given step must be a positive number")
@@ -63,4 +63,4 @@ def make_grid(start: float, step: float | Sequence[float] | np.ndarray, until: f
     count = int(np.searchsorted(instants, until * (1.0 - 1e-12)))
     if count > MOST_STEPS:
         raise InputError(f"step: more than {MOST_STEPS} steps are too many to keep; take larger ones")
-    return Grid(t=start + instants[: count + 1], h=steps[:count])
+    return TimeGrid(t=start + instants[: count + 1], h=steps[:count])

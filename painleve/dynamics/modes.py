@@ -10,14 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.law import stick_impulse
 from painleve.dynamics.start import Start
 
 __all__ = ["ContactPoint", "Mode", "closed_modes"]
 
 ROUNDING = 1e-13  # relative: an edge of the cone below this has no sign
-Mode = Branch  # FREE: the contact opens; STICK, SLIP_PLUS, SLIP_MINUS, FRICTIONLESS: it stays closed
+Mode = ContactMode  # FREE: the contact opens; STICK, SLIP_PLUS, SLIP_MINUS, FRICTIONLESS: it stays closed
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,7 +8,7 @@ import numpy as np
 import sympy as sp
 import xarray as xr
 
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Change
 from painleve.dynamics.contact_rows import tangential_names
 from painleve.mechanics.scene import Scene
@@ -51,7 +51,7 @@ def _number(values: np.ndarray, sentence: str, unit: str, dims: tuple[str, ...] 
     return xr.Variable(dims, values, {"units": unit, "long_name": sentence})
 
 
-def _code(values: np.ndarray, sentence: str, codes: type[Branch] | type[Change]) -> xr.Variable:
+def _code(values: np.ndarray, sentence: str, codes: type[ContactMode] | type[Change]) -> xr.Variable:
     """CF flags, with 0 for the start, where no step ends."""
     known = np.arange(len(codes) + 1, dtype=np.int8)
     meanings = " ".join(["not_run", *(c.label for c in codes)])
@@ -85,7 +85,7 @@ def _contact(trajectory: Trajectory) -> dict[str, xr.Variable]:
         sentence = f"{words} contact impulse of the step that ends here"
         variables[f"r_{side}"] = _number(trajectory.r[:, j], sentence, impulse)
     variables["contact_work"] = _number(trajectory.contact_work(), "work of the contact impulses since the start", "J")
-    variables["branch"] = _code(trajectory.branch, "branch of the contact law in the step that ends here", Branch)
+    variables["branch"] = _code(trajectory.branch, "branch of the contact law in the step that ends here", ContactMode)
     variables["change"] = _code(trajectory.change, "change of the velocity at the contact in that step", Change)
     return variables
 

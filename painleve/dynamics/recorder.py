@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Change, Ending
-from painleve.dynamics.arc import Place
-from painleve.dynamics.grid import Grid
+from painleve.dynamics.arc import ArcPoint
+from painleve.dynamics.grid import TimeGrid
 from painleve.dynamics.start import Start
 from painleve.dynamics.trajectory import Trajectory
 
@@ -26,10 +26,10 @@ class Recorder:
         self.parts = [(np.array([start.t]), first[None, :], *(np.zeros(1, np.int8) for _ in range(2)))]
 
     @property
-    def last(self) -> Place:
-        return Place(float(self.parts[-1][0][-1]), self.parts[-1][1][-1])
+    def last(self) -> ArcPoint:
+        return ArcPoint(float(self.parts[-1][0][-1]), self.parts[-1][1][-1])
 
-    def passed(self, grid: Grid, end: float) -> np.ndarray:
+    def passed(self, grid: TimeGrid, end: float) -> np.ndarray:
         """The grid's instants after the last row and before `end`."""
         first, stop = np.searchsorted(grid.t, self.last.t, "right"), np.searchsorted(grid.t, end, "left")
         return grid.t[first:stop]
@@ -43,7 +43,7 @@ class Recorder:
     ) -> Trajectory:
         d = len(self.start.q)
         t, y, branch, change = (np.concatenate(column) for column in zip(*self.parts, strict=True))
-        counts = {b.label: int((branch[1:] == b).sum()) for b in Branch}
+        counts = {b.label: int((branch[1:] == b).sum()) for b in ContactMode}
         return Trajectory(
             scheme=scheme,
             start=self.start,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from painleve.core.motion_codes import FixedStep
 from painleve.dynamics.fixed_step import run_fixed_step
-from painleve.dynamics.grid import Grid
+from painleve.dynamics.grid import TimeGrid
 from painleve.dynamics.start import Start
 from painleve.dynamics.trajectory import Trajectory
 from painleve.errors import InputError
@@ -35,7 +35,7 @@ class Scheme:
     options: Mapping[str, float] = field(default_factory=dict)
 
     def run(
-        self, start: Start, grid: Grid, tolerance: float, options: Mapping[str, float], progress: Progress
+        self, start: Start, grid: TimeGrid, tolerance: float, options: Mapping[str, float], progress: Progress
     ) -> Trajectory:
         raise NotImplementedError
 
@@ -70,7 +70,7 @@ class Stepped(Scheme):
         return theta
 
     def run(
-        self, start: Start, grid: Grid, tolerance: float, options: Mapping[str, float], progress: Progress
+        self, start: Start, grid: TimeGrid, tolerance: float, options: Mapping[str, float], progress: Progress
     ) -> Trajectory:
         theta = self.theta(options)
         return run_fixed_step(self.name, int(self.code), theta, self.lag(theta), start, grid, tolerance, progress)
@@ -80,7 +80,7 @@ class Stepped(Scheme):
 class Integrated(Scheme):
     """A method on top of an adaptive integrator; the grid says where the trajectory is recorded."""
 
-    integrate: Callable[[Start, Grid, Mapping[str, float], Progress], Trajectory]
+    integrate: Callable[[Start, TimeGrid, Mapping[str, float], Progress], Trajectory]
     tests_contact: bool = False
 
     def settings(self, tolerance: float, given: Mapping[str, float] | None) -> dict[str, float]:
@@ -94,6 +94,6 @@ class Integrated(Scheme):
         return options
 
     def run(
-        self, start: Start, grid: Grid, tolerance: float, options: Mapping[str, float], progress: Progress
+        self, start: Start, grid: TimeGrid, tolerance: float, options: Mapping[str, float], progress: Progress
     ) -> Trajectory:
         return self.integrate(start, grid, options, progress)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from painleve.errors import InputError
+from painleve.exact.parse import exact_number
 from painleve.kernels.motion import Motion, make_motion
-from painleve.mechanics.parse import exact_number
 from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import Number, State, resolve_parameters
 

@@ -1,4 +1,4 @@
-"""Derive the contact quantities of a scene in closed form (the project's notes, sections 1 and 2)."""
+"""Derive the contact quantities of a scene in closed form (docs/theory.md, sections 1 and 2)."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ class Derivation:
 
 @lru_cache(maxsize=64)
 def derive(scene: Scene) -> Derivation:
-    """The contact quantities of a scene; W^T M^-1 W, gamma and mu_c as in the project's notes, section 1."""
+    """The contact quantities of a scene; W^T M^-1 W, gamma and mu_c as in docs/theory.md, section 1."""
     w_n = sp.ImmutableMatrix([-sp.diff(scene.constraint, x) for x in scene.q])
     adjugate, determinant = scene.inertia.adjugate(), scene.inertia.det(method="berkowitz")
     Y_n, Y_t = adjugate * w_n / determinant, adjugate * scene.tangents / determinant

@@ -1,4 +1,4 @@
-"""Friction sections B(q): what friction impulses s a unit normal impulse admits (the project's notes, section 1).
+"""Friction sections B(q): what friction impulses s a unit normal impulse admits (docs/theory.md, section 1).
 
 All lie in R^k, k = 1 in the plane and 2 in space, hold 0 and may depend on q. Where the impulse is lambda (1, s), the
 normal compliance along it is a + b.s; its least value over B decides the sign of gamma.

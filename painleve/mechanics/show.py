@@ -9,9 +9,9 @@ from functools import lru_cache
 import sympy as sp
 
 from painleve.errors import InputError
+from painleve.exact.parse import parse_expression
 from painleve.mechanics.derive import Derivation, derive
 from painleve.mechanics.friction import Disc, Ellipse, Polygon, Segment, norm
-from painleve.mechanics.parse import parse_expression
 from painleve.mechanics.scene import Coordinate, Parameter, Scene
 from painleve.mechanics.scene_file.work import TooMuchWork, limited_calls
 

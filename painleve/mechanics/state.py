@@ -11,11 +11,11 @@ from typing import TypeAlias
 import sympy as sp
 
 from painleve.errors import InputError
-from painleve.mechanics.balls import ball
+from painleve.exact.balls import ball
+from painleve.exact.parse import exact_number, parse_expression
+from painleve.exact.signs import Sign, exact_sign
 from painleve.mechanics.derive import derive
-from painleve.mechanics.parse import exact_number, parse_expression
 from painleve.mechanics.scene import NamedState, Scene
-from painleve.mechanics.signs import Sign, exact_sign
 
 __all__ = ["Number", "State", "make_curve", "make_state", "resolve_parameters"]
 

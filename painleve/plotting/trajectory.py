@@ -26,7 +26,7 @@ JUMPS = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Curve:
+class PlottedLine:
     """A variable over time: how it is drawn and what the legend says."""
 
     name: str
@@ -37,21 +37,21 @@ class Curve:
 
 # Panels from the top, with the label of their axis; a curve is drawn if the dataset has it.
 CURVES = (
-    ("$\\gamma$", (Curve(name="gamma", label="$\\gamma$", colour=PALETTE["purple"]),)),
+    ("$\\gamma$", (PlottedLine(name="gamma", label="$\\gamma$", colour=PALETTE["purple"]),)),
     (
         "velocity",
         (
-            Curve(name="v_n", label="contact point, normal $v_n$", colour=PALETTE["blue"]),
-            Curve(name="v_t", label="contact point, tangential $v_t$", colour=PALETTE["orange"], style="--"),
-            Curve(name="v_t1", label="contact point, tangential $v_{t1}$", colour=PALETTE["orange"], style="--"),
-            Curve(name="v_t2", label="contact point, tangential $v_{t2}$", colour=PALETTE["green"], style="-."),
+            PlottedLine(name="v_n", label="contact point, normal $v_n$", colour=PALETTE["blue"]),
+            PlottedLine(name="v_t", label="contact point, tangential $v_t$", colour=PALETTE["orange"], style="--"),
+            PlottedLine(name="v_t1", label="contact point, tangential $v_{t1}$", colour=PALETTE["orange"], style="--"),
+            PlottedLine(name="v_t2", label="contact point, tangential $v_{t2}$", colour=PALETTE["green"], style="-."),
         ),
     ),
     (
         "energy",
         (
-            Curve(name="kinetic_energy", label="kinetic energy", colour=PALETTE["green"]),
-            Curve(name="contact_work", label="work of the contact", colour=PALETTE["black"], style="--"),
+            PlottedLine(name="kinetic_energy", label="kinetic energy", colour=PALETTE["green"]),
+            PlottedLine(name="contact_work", label="work of the contact", colour=PALETTE["black"], style="--"),
         ),
     ),
 )
@@ -120,7 +120,7 @@ def _draw_bodies(axis: Axes, dataset: xr.Dataset) -> None:
         axis.add_collection(LineCollection(list(lines), colors=colour, linewidths=1.0, zorder=3), autolim=False)
 
 
-def _draw_panel(axis: Axes, dataset: xr.Dataset, label: str, curves: tuple[Curve, ...]) -> None:
+def _draw_panel(axis: Axes, dataset: xr.Dataset, label: str, curves: tuple[PlottedLine, ...]) -> None:
     axis.axhline(0.0, color=GREY, linewidth=0.5, zorder=0)
     for curve in (c for c in curves if c.name in dataset):
         axis.plot(dataset["time"], dataset[curve.name], color=curve.colour, linestyle=curve.style, label=curve.label)

@@ -2,15 +2,15 @@
 
 from painleve.sets.bounds import Bounds, Side, largest
 from painleve.sets.hausdorff import Excess, Hausdorff, excess, excess_of_segment_from_profile, hausdorff
-from painleve.sets.shapes import Cloud, Points, Segment, Shape
+from painleve.sets.shapes import Cloud, LineSegment, Points, Shape
 
 __all__ = [
     "Bounds",
     "Cloud",
     "Excess",
     "Hausdorff",
+    "LineSegment",
     "Points",
-    "Segment",
     "Shape",
     "Side",
     "excess",

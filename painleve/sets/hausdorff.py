@@ -2,7 +2,7 @@
 
 The excess of X from Y is e(X, Y) = sup over x in X of dist(x, Y), and d_H = max(e(X, Y), e(Y, X)) (Paoli 2016,
 section 3). Distances are Euclidean. Each result carries the side on which it is known: a cloud holds true members of
-a larger set, so it bounds a supremum over that set from below and a distance to it from above (the project's notes,
+a larger set, so it bounds a supremum over that set from below and a distance to it from above (docs/theory.md,
 section 4).
 
 Rounding: distances between points are good to a few units in the last place (ulps); distances from a segment to a few
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from painleve.errors import InputError
 from painleve.sets.bounds import Bounds, largest
-from painleve.sets.shapes import LARGEST_COORDINATE, Cloud, FloatArray, Segment, Shape
+from painleve.sets.shapes import LARGEST_COORDINATE, Cloud, FloatArray, LineSegment, Shape
 
 __all__ = ["Excess", "Hausdorff", "excess", "excess_of_segment_from_profile", "hausdorff"]
 
@@ -119,10 +119,10 @@ def _sided(X: Shape, Y: Shape, distance: float) -> Bounds:
 
 
 def _farthest(X: Shape, Y: Shape) -> _Farthest:
-    if isinstance(Y, Segment):  # the distance to a convex set is convex: over a segment its maximum is at an end
-        x = np.stack([X.start, X.end]) if isinstance(X, Segment) else X.members
+    if isinstance(Y, LineSegment):  # the distance to a convex set is convex: over a segment its maximum is at an end
+        x = np.stack([X.start, X.end]) if isinstance(X, LineSegment) else X.members
         return _points_from_segment(x, Y)
-    if isinstance(X, Segment):
+    if isinstance(X, LineSegment):
         return _segment_from_points(X, Y.members)
     return _points_from_points(X.members, Y.members)
 
@@ -139,7 +139,7 @@ def _points_from_points(x: FloatArray, y: FloatArray) -> _Farthest:
     return _Farthest(float(distances[i]), x[i], y[nearest[i]])
 
 
-def _points_from_segment(x: FloatArray, segment: Segment) -> _Farthest:
+def _points_from_segment(x: FloatArray, segment: LineSegment) -> _Farthest:
     length = segment.length
     best, winner, place = -1.0, 0, 0.0
     for first, from_start, from_end, rho in _along_and_across(x, segment):
@@ -151,7 +151,7 @@ def _points_from_segment(x: FloatArray, segment: Segment) -> _Farthest:
     return _Farthest(best, x[winner], _at(segment, min(max(place, 0.0), length)))
 
 
-def _segment_from_points(segment: Segment, y: FloatArray) -> _Farthest:
+def _segment_from_points(segment: LineSegment, y: FloatArray) -> _Farthest:
     length = segment.length
     t, across = np.empty(len(y)), np.empty(len(y))
     for first, from_start, _, rho in _along_and_across(y, segment):
@@ -162,7 +162,7 @@ def _segment_from_points(segment: Segment, y: FloatArray) -> _Farthest:
 
 
 def _along_and_across(
-    members: FloatArray, segment: Segment
+    members: FloatArray, segment: LineSegment
 ) -> Iterator[tuple[int, FloatArray, FloatArray, FloatArray]]:
     """For chunks of rows: the first row, places along the segment from its start and from its end, distances across.
 
@@ -179,7 +179,7 @@ def _along_and_across(
         yield first, from_start, from_end, np.sqrt(np.einsum("ij,ij->i", across, across))
 
 
-def _at(segment: Segment, place: float) -> FloatArray:
+def _at(segment: LineSegment, place: float) -> FloatArray:
     """The point at a distance from the start, from the nearer end, so that both ends are met exactly."""
     length = segment.length
     if 2.0 * place <= length:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from painleve.errors import InputError
 
-__all__ = ["LARGEST_COORDINATE", "Cloud", "FloatArray", "Points", "Segment", "Shape"]
+__all__ = ["LARGEST_COORDINATE", "Cloud", "FloatArray", "LineSegment", "Points", "Shape"]
 
 FloatArray = NDArray[np.float64]
 
@@ -53,7 +53,7 @@ class Cloud:
 
 
 @dataclass(frozen=True, eq=False)
-class Segment:
+class LineSegment:
     """The closed segment from start to end, shape (d,) each; start = end is allowed. Raises InputError."""
 
     start: FloatArray
@@ -83,7 +83,7 @@ class Segment:
         return (self.end - self.start) / length if length > 0.0 else np.zeros_like(self.start)
 
 
-Shape = Points | Segment | Cloud
+Shape = Points | LineSegment | Cloud
 
 
 def _members(values: ArrayLike, what: str) -> FloatArray:

@@ -30,7 +30,7 @@ from painleve.sweep.motion_problems import PROBLEMS, Problem, Reference, make_re
 from painleve.sweep.variables import OUTCOMES, code, coded, text, velocity_unit
 from painleve.workprec import timed
 
-__all__ = ["CONTROLS", "EXPECTED_ORDER", "VERDICTS", "Convergence", "Effort", "sweep_convergence"]
+__all__ = ["CONTROLS", "EXPECTED_ORDER", "VERDICTS", "Convergence", "MotionEffort", "sweep_convergence"]
 
 EXPECTED_ORDER = 1.0
 """In what each scheme is controlled by: a jump or a kink within a step costs up to a step, whatever the order is where
@@ -57,7 +57,7 @@ CONTROLS = ("step", "tolerance", "contact_time")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Effort:
+class MotionEffort:
     """How much work. Numbers of steps run from `fewest` to `most` in `levels`, `phases` numbers near each.
 
     `tolerances` are those of the event-driven method, `stiffnesses` (N/m) those of the compliant one; `instants`:
@@ -75,7 +75,7 @@ class Effort:
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Trial:
+class _MotionTrial:
     """One run: a scheme, what it is controlled by and its value, and how to run it; `recorded`, for the distance only,
     where an adaptive method returns few instants when it is timed."""
 
@@ -103,7 +103,7 @@ class _Record:
 def sweep_convergence(
     problems: Sequence[Problem] = PROBLEMS,
     *,
-    effort: Effort | None = None,
+    effort: MotionEffort | None = None,
     seed: int = 0,
     progress: Callable[[str], None] | None = None,
     command: str | None = None,
@@ -112,7 +112,7 @@ def sweep_convergence(
 
     `progress` is called with the problem's name after each run. Raises InputError for a problem without a reference.
     """
-    effort = effort or Effort()
+    effort = effort or MotionEffort()
     references, records, compiling, layout = [], [], [], []
     for problem in problems:
         start = problem.start()
@@ -154,13 +154,13 @@ def _compile(start: Start) -> float:
     return time.perf_counter() - begin
 
 
-def _trials(problem: Problem, start: Start, effort: Effort, seed: int) -> Iterator[_Trial]:
+def _trials(problem: Problem, start: Start, effort: MotionEffort, seed: int) -> Iterator[_MotionTrial]:
     """The runs on one problem, in the same order for every problem."""
     until = problem.until
     for name in SCHEME_NAMES:
         if isinstance(load_scheme(name), Stepped):
             for level, steps in _step_numbers(effort, seed):
-                yield _Trial(
+                yield _MotionTrial(
                     scheme=name,
                     level=level,
                     control="step",
@@ -170,7 +170,7 @@ def _trials(problem: Problem, start: Start, effort: Effort, seed: int) -> Iterat
         elif name == "event_driven":
             for level, tolerance in enumerate(effort.tolerances):
                 options = {"rtol": tolerance, "atol": tolerance / 100.0}
-                yield _Trial(
+                yield _MotionTrial(
                     scheme=name,
                     level=level,
                     control="tolerance",
@@ -183,7 +183,7 @@ def _trials(problem: Problem, start: Start, effort: Effort, seed: int) -> Iterat
                 yield _compliant(start, name, level, stiffness, until)
 
 
-def _step_numbers(effort: Effort, seed: int) -> Iterator[tuple[int, int]]:
+def _step_numbers(effort: MotionEffort, seed: int) -> Iterator[tuple[int, int]]:
     """(level, number of steps): several within a tenth of each level, at random."""
     random = np.random.default_rng(seed)
     for level, centre in enumerate(np.geomspace(effort.fewest, effort.most, effort.levels)):
@@ -191,13 +191,13 @@ def _step_numbers(effort: Effort, seed: int) -> Iterator[tuple[int, int]]:
             yield level, round(centre * factor)
 
 
-def _compliant(start: Start, name: str, level: int, stiffness: float, until: float) -> _Trial:
+def _compliant(start: Start, name: str, level: int, stiffness: float, until: float) -> _MotionTrial:
     """A compliant contact whose slip is regularised over the same scale: contact time 1 m/s^2."""
     a = start.rows[1 + 2 * start.scene.dimension]
     contact_time = 1.0 / math.sqrt(a * stiffness)
     options = {"stiffness": stiffness, "slip_speed": contact_time, "rtol": 1e-6, "atol": 1e-9}
     step = until / math.ceil(2.0 * until / contact_time)
-    return _Trial(
+    return _MotionTrial(
         scheme=name,
         level=level,
         control="contact_time",
@@ -213,7 +213,7 @@ def _runner(
 
 
 def _record(
-    trial: _Trial, reference: Reference, effort: Effort, label: str, progress: Callable[[str], None] | None
+    trial: _MotionTrial, reference: Reference, effort: MotionEffort, label: str, progress: Callable[[str], None] | None
 ) -> _Record:
     timing = timed(trial.run, patience=effort.patience)
     found = trial.recorded() if trial.recorded else timing.result

@@ -8,10 +8,10 @@ import numpy as np
 import xarray as xr
 
 from painleve.asymptotics.member import Member
-from painleve.asymptotics.theorem import Classification, Evidence, Verdict
+from painleve.asymptotics.theorem import Evidence, Verdict
 from painleve.errors import InputError
 from painleve.sets import Bounds
-from painleve.sweep.grid import Grid
+from painleve.sweep.grid import SweepGrid
 from painleve.sweep.variables import (
     BRANCHES,
     LAW_BRANCHES,
@@ -23,6 +23,7 @@ from painleve.sweep.variables import (
     text,
     velocity_unit,
 )
+from painleve.theory.classification import Classification
 
 __all__ = ["DistanceTable"]
 
@@ -40,7 +41,7 @@ MEASURED = {
 class DistanceTable:
     """The arrays of the dataset while they fill up; a point is an index of the grid, with eps last."""
 
-    def __init__(self, grid: Grid, eps: np.ndarray) -> None:
+    def __init__(self, grid: SweepGrid, eps: np.ndarray) -> None:
         self.grid, self.eps = grid, eps
         self.at_state, self.at_eps = grid.shape, (*grid.shape, len(eps))
         d = grid.scene.dimension

@@ -10,10 +10,9 @@ import numpy as np
 import xarray as xr
 
 from painleve.asymptotics.distance import Distance
-from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.methods import distance, find_method
 from painleve.asymptotics.sample import check_eps
-from painleve.asymptotics.theorem import classify, collect, judge
+from painleve.asymptotics.theorem import collect, judge
 from painleve.errors import InputError
 from painleve.kernels.compiled import make_kernels
 from painleve.mechanics.scene import Scene
@@ -21,6 +20,8 @@ from painleve.mechanics.state import Number
 from painleve.store import provenance
 from painleve.sweep.distance_table import DistanceTable
 from painleve.sweep.grid import make_grid
+from painleve.theory.classification import classify
+from painleve.theory.limit_set import LimitSet
 
 __all__ = ["sweep_distances"]
 

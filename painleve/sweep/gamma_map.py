@@ -9,7 +9,6 @@ import numpy as np
 import sympy as sp
 import xarray as xr
 
-from painleve.asymptotics.theorem import classify
 from painleve.errors import InputError
 from painleve.kernels.compiled import Kernels, make_kernels
 from painleve.mechanics.scene import Scene
@@ -17,6 +16,7 @@ from painleve.mechanics.state import Number, State
 from painleve.store import provenance
 from painleve.sweep.grid import make_grid
 from painleve.sweep.variables import BRANCHES, code, coded
+from painleve.theory.classification import classify
 
 __all__ = ["map_gamma"]
 

@@ -12,18 +12,18 @@ import sympy as sp
 import xarray as xr
 
 from painleve.errors import InputError
-from painleve.mechanics.parse import exact_number
+from painleve.exact.parse import exact_number
 from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import Number, State, make_state
 from painleve.sweep.variables import text
 
-__all__ = ["Grid", "make_grid", "meaning"]
+__all__ = ["SweepGrid", "make_grid", "meaning"]
 
 RESERVED = {"state", "eps", "law_branch", "coordinate", "member", "path", "friction"}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Grid:
+class SweepGrid:
     """States x swept values. `labels`: of the states; `names`: their names in the library (None: given by keys alone);
     `over`: exact values by parameter or state key, in the order of the dataset's dimensions."""
 
@@ -72,7 +72,7 @@ def make_grid(
     keys: Mapping[str, Number] | None = None,
     parameters: Mapping[str, Number] | None = None,
     over: Mapping[str, Sequence[Number]] | None = None,
-) -> Grid:
+) -> SweepGrid:
     """A grid over named states (none: the state that the keys give) and over exact values of parameters or keys.
 
     Raises InputError for unknown names, an empty list of values, and values that are not exact numbers.
@@ -93,7 +93,7 @@ def make_grid(
     labels = tuple(f"{state} {given}".strip() for state in states) or (given or "given",)
     if len(set(labels)) < len(labels):
         raise InputError(f"sweep: a state is named twice in {', '.join(states)}; name each once")
-    return Grid(
+    return SweepGrid(
         scene=scene,
         labels=labels,
         names=tuple(states) or (None,),

@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 
 from painleve import sets
-from painleve.asymptotics.limit_set import limit_set
 from painleve.core.ball_maps import uniform_ball, uniforms_needed
 from painleve.core.motion_codes import Ending, FixedStep
 from painleve.core.streams import uniform_block
@@ -20,6 +19,7 @@ from painleve.kernels.motion import make_motion
 from painleve.mechanics.state import State
 from painleve.store import provenance
 from painleve.sweep.variables import ball_unit, text, velocity_unit
+from painleve.theory.limit_set import limit_set
 
 __all__ = ["sweep_initial_layer"]
 

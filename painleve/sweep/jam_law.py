@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 
 from painleve.core.jam_map import jam_fraction, limit_law
-from painleve.core.motion_codes import Outcome
+from painleve.core.motion_codes import MemberOutcome
 from painleve.dynamics.ensemble import Ensemble, run_ensemble, wilson_interval
 from painleve.dynamics.genot_brogliato import SingularPoint, find_friction, singular_point
 from painleve.kernels.motion import make_motion
@@ -32,7 +32,7 @@ PERIODS = 0.4  # how much the number of hops or steps varies over the window of 
 STARTS = 100  # of a case
 SPREAD = 0.2  # of the distances of these starts, relative, to either side
 LONGEST = 8.0  # times the duration of the slip at its first rate: longer than the last hop
-EXPECTED = (Outcome.JUMP, Outcome.LIFT_OFF, Outcome.SLIDE)
+EXPECTED = (MemberOutcome.JUMP, MemberOutcome.LIFT_OFF, MemberOutcome.SLIDE)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +48,7 @@ class Fraction:
     def of(ensembles: Sequence[Ensemble]) -> Fraction:
         """From ensembles of equal size, each with its start: the scatter between them over that of independent trials
         is the design effect (L. Kish, Survey Sampling, 1965) by which the count is divided."""
-        each, n = np.array([e.fraction(Outcome.JUMP) for e in ensembles]), ensembles[0].count
+        each, n = np.array([e.fraction(MemberOutcome.JUMP) for e in ensembles]), ensembles[0].count
         value, count = float(each.mean()), n * len(each)
         binomial = value * (1.0 - value) / n
         effect = max(1.0, float(each.var(ddof=1)) / binomial) if binomial > 0.0 else 1.0

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from painleve.asymptotics.coulomb.problem import problem_at
 from painleve.core.space.two_laws import compare_laws
 from painleve.errors import InputError
 from painleve.mechanics.derive import derive
@@ -17,6 +16,7 @@ from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import State
 from painleve.store import provenance
 from painleve.sweep.variables import text, velocity_unit
+from painleve.theory.coulomb.problem import problem_at
 
 __all__ = ["map_laws"]
 

@@ -8,9 +8,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.sample import SampleOptions, check_eps, sample_members
-from painleve.asymptotics.theorem import classify
 from painleve.asymptotics.witness import find_family
 from painleve.errors import InputError
 from painleve.kernels.compiled import make_kernels
@@ -19,6 +17,8 @@ from painleve.mechanics.state import Number
 from painleve.store import provenance
 from painleve.sweep.grid import make_grid
 from painleve.sweep.variables import BRANCHES, LAW_BRANCHES, LIMIT_SETS, ball_unit, code, coded, text, velocity_unit
+from painleve.theory.classification import classify
+from painleve.theory.limit_set import LimitSet
 
 __all__ = ["sweep_members"]
 

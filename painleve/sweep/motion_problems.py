@@ -1,6 +1,6 @@
 """Motions with contact of which the solution is unique and known: what observed orders of convergence are measured on.
 
-They fall into the three situations for which the scheme of Contact Dynamics is proved convergent (the project's notes,
+They fall into the three situations for which the scheme of Contact Dynamics is proved convergent (docs/theory.md,
 section 7). The references are closed forms, or an event-driven integration at tight tolerance.
 """
 

@@ -14,13 +14,13 @@ import numpy as np
 import sympy as sp
 from scipy.spatial import cKDTree
 
-from painleve.asymptotics.limit_set import LimitSet
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.errors import InputError
 from painleve.kernels.rows import rows_of
 from painleve.mechanics.derive import derive
 from painleve.mechanics.scene import Scene
-from painleve.sets import Points, Segment
+from painleve.sets import LineSegment, Points
+from painleve.theory.limit_set import LimitSet
 
 __all__ = ["NaiveMembers", "naive_distance", "naive_members", "point_distances", "uniform_ball"]
 
@@ -74,7 +74,9 @@ def naive_members(limit: LimitSet, dq: np.ndarray, dv: np.ndarray) -> NaiveMembe
     moved = (g >= 0.0) & (v_n < 0.0)
     values = v + np.where(moved, r_n, 0.0)[:, None] * Y_n.T + np.where(moved, r_t, 0.0)[:, None] * Y_t.T
     branch = np.select(
-        [~moved, slip_plus, slip_minus], [Branch.FREE, Branch.SLIP_PLUS, Branch.SLIP_MINUS], Branch.STICK
+        [~moved, slip_plus, slip_minus],
+        [ContactMode.FREE, ContactMode.SLIP_PLUS, ContactMode.SLIP_MINUS],
+        ContactMode.STICK,
     )
     return NaiveMembers(values=values, branch=branch, normal_velocity=v_n, edge_plus=plus, edge_minus=minus)
 
@@ -82,7 +84,7 @@ def naive_members(limit: LimitSet, dq: np.ndarray, dv: np.ndarray) -> NaiveMembe
 def point_distances(limit: LimitSet, values: np.ndarray) -> np.ndarray:
     """Distances of points (n, d) from A."""
     shape = _rounded(limit).shape
-    if not isinstance(shape, Segment):
+    if not isinstance(shape, LineSegment):
         return np.min([np.linalg.norm(values - point, axis=1) for point in shape.members], axis=0)
     jump = shape.end - shape.start
     share = np.clip((values - shape.start) @ jump / (jump @ jump), 0.0, 1.0)
@@ -91,14 +93,14 @@ def point_distances(limit: LimitSet, values: np.ndarray) -> np.ndarray:
 
 def _grid(limit: LimitSet) -> np.ndarray:
     shape = _rounded(limit).shape
-    return np.linspace(shape.start, shape.end, GRID) if isinstance(shape, Segment) else shape.members
+    return np.linspace(shape.start, shape.end, GRID) if isinstance(shape, LineSegment) else shape.members
 
 
 class _Rounded(NamedTuple):
     q: np.ndarray
     p: list[float]
     u: np.ndarray
-    shape: Points | Segment
+    shape: Points | LineSegment
 
 
 @lru_cache(maxsize=16)

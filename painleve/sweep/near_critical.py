@@ -9,16 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.methods import distance
 from painleve.asymptotics.sample import check_eps
-from painleve.asymptotics.theorem import Branch, classify
 from painleve.errors import InputError
 from painleve.kernels.compiled import make_kernels
 from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import Number, make_state
 from painleve.store import provenance
 from painleve.sweep.variables import BRANCHES, ball_unit, code, coded, text, velocity_unit
+from painleve.theory.classification import Branch, classify
+from painleve.theory.limit_set import LimitSet
 
 __all__ = ["NearCase", "sweep_near_critical"]
 

@@ -9,9 +9,9 @@ import sympy as sp
 import xarray as xr
 
 from painleve.errors import InputError
+from painleve.exact.parse import exact_number, parse_expression
 from painleve.kernels.compiled import make_kernels
 from painleve.mechanics.derive import derive
-from painleve.mechanics.parse import exact_number, parse_expression
 from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import Number, resolve_parameters
 from painleve.store import provenance
@@ -37,7 +37,7 @@ def map_regimes(
     compliance a + s b at the friction s that opposes the slip, and beta the normal acceleration without contact force,
     `0 <= F, beta + p F >= 0, F (beta + p F) = 0` has the solution F = -beta/p only (slip: p > 0 > beta), F = 0 only
     (lift-off: p, beta > 0), none (inconsistent: p, beta < 0), or both (indeterminate: beta > 0 > p). Plain floats.
-    (The project's notes, section 6; regimes as in A. R. Champneys and P. L. Várkonyi, arXiv 1601.03545.)
+    (docs/theory.md, section 6; regimes as in A. R. Champneys and P. L. Várkonyi, arXiv 1601.03545.)
 
     Raises InputError for a scene without friction, and unless two different state keys are given.
     """

@@ -8,20 +8,20 @@ import flint
 import numpy as np
 import xarray as xr
 
-from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.local import BITS, Arithmetic, LocalProblem, make_local_problem
 from painleve.asymptotics.member import Member, base_balls, make_member, row_balls
 from painleve.asymptotics.optimise import optimise_distance
 from painleve.asymptotics.sample import SampleOptions, check_eps, sample_distance
-from painleve.asymptotics.theorem import classify
 from painleve.asymptotics.witness import find_witness
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.errors import InputError
 from painleve.kernels.compiled import make_kernels
 from painleve.mechanics.state import State
 from painleve.store import provenance
 from painleve.sweep.naive import naive_members, point_distances, uniform_ball
 from painleve.sweep.variables import LAW_BRANCHES, ball_unit, text
+from painleve.theory.classification import classify
+from painleve.theory.limit_set import LimitSet
 
 __all__ = ["QUANTITIES", "sweep_rounding"]
 
@@ -116,7 +116,7 @@ def _plain_errors(problem: LocalProblem, eps: float, members: int, seed: int) ->
     while len(exact) < members:
         dq, dv = (uniform_ball(random, 1, problem.dimension, eps)[0] for _ in range(2))
         member = make_member(problem, dq, dv)
-        if member.branch is not Branch.FREE:
+        if member.branch is not ContactMode.FREE:
             exact.append(_quantities(problem, member))
             offsets.append((dq, dv))
     plain = naive_members(limit, *(np.array(x) for x in zip(*offsets, strict=True)))

@@ -8,18 +8,19 @@ import numpy as np
 import xarray as xr
 
 from painleve.asymptotics.sample import SampleOptions, check_eps, sample_distance
-from painleve.asymptotics.theorem import SHADOW, classify
+from painleve.asymptotics.theorem import SHADOW
 from painleve.asymptotics.witness import find_family
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.errors import InputError
 from painleve.kernels.compiled import make_kernels
 from painleve.mechanics.state import State
 from painleve.store import provenance
 from painleve.sweep.variables import ball_unit, velocity_unit
+from painleve.theory.classification import classify
 
 __all__ = ["sweep_sampled_bound"]
 
-SLIPS = (Branch.SLIP_PLUS.label, Branch.SLIP_MINUS.label)
+SLIPS = (ContactMode.SLIP_PLUS.label, ContactMode.SLIP_MINUS.label)
 
 
 def sweep_sampled_bound(

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from painleve.core.jam_map import jam_fraction
-from painleve.core.motion_codes import Ending, Outcome
+from painleve.core.motion_codes import Ending, MemberOutcome
 from painleve.dynamics.ensemble import run_ensemble
 from painleve.dynamics.genot_brogliato import SingularPoint, singular_point
 from painleve.dynamics.simulate import simulate
@@ -109,8 +109,8 @@ def sweep_step_sizes(
                 keep=True,
             )
             count[i, j] = e.count
-            number["fraction"][i, j] = e.fraction(Outcome.JUMP)
-            number["lower"][i, j], number["upper"][i, j] = e.interval(Outcome.JUMP)
+            number["fraction"][i, j] = e.fraction(MemberOutcome.JUMP)
+            number["lower"][i, j], number["upper"][i, j] = e.interval(MemberOutcome.JUMP)
             number["local_map"][i, j] = _predicted(approach, window, strict=contact == "strict")
             if e.jump_time is not None:
                 number["first"][i, j], number["median"][i, j], number["last"][i, j] = e.jump_time
@@ -118,7 +118,9 @@ def sweep_step_sizes(
             n = min(kept, asked)
             steps[i, j, :n], times[i, j, :n] = e.members.step[:n], e.members.time[:n]
             outcomes[i, j, :n] = 1 + np.select(
-                [e.members.outcome[:n] == Outcome.JUMP, e.members.outcome[:n] == Outcome.LIFT_OFF], [0, 1], 2
+                [e.members.outcome[:n] == MemberOutcome.JUMP, e.members.outcome[:n] == MemberOutcome.LIFT_OFF],
+                [0, 1],
+                2,
             )
             if progress is not None:
                 progress(1)

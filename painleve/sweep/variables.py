@@ -7,10 +7,11 @@ from collections.abc import Iterable
 import numpy as np
 import xarray as xr
 
-from painleve.asymptotics.theorem import Branch, Status
-from painleve.core.codes import Branch as LawBranch
+from painleve.asymptotics.theorem import VerdictStatus
+from painleve.core.codes import ContactMode as LawBranch
 from painleve.mechanics.scene import Scene
 from painleve.store import flags
+from painleve.theory.classification import Branch
 
 __all__ = [
     "BRANCHES",
@@ -27,7 +28,7 @@ __all__ = [
 
 OUTCOMES = ("done", "failed")
 BRANCHES = tuple(b.value for b in Branch)
-STATUSES = tuple(s.value for s in Status)
+STATUSES = tuple(s.value for s in VerdictStatus)
 LAW_BRANCHES = tuple(b.label for b in LawBranch)
 LIMIT_SETS = ("point", "pair", "segment", "undecided")
 

@@ -10,10 +10,8 @@ import numpy as np
 import xarray as xr
 
 from painleve.asymptotics.distance import Distance
-from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.methods import METHODS, Method, distance
 from painleve.asymptotics.sample import SAMPLERS, check_eps
-from painleve.asymptotics.theorem import classify
 from painleve.errors import InputError
 from painleve.kernels.compiled import make_kernels
 from painleve.mechanics.state import State
@@ -21,17 +19,19 @@ from painleve.sets import Bounds
 from painleve.store import provenance
 from painleve.sweep.naive import naive_distance
 from painleve.sweep.variables import BRANCHES, ball_unit, code, coded, text, velocity_unit
-from painleve.workprec import Outcome, Record, Run, measure
+from painleve.theory.classification import classify
+from painleve.theory.limit_set import LimitSet
+from painleve.workprec import Record, Run, RunOutcome, measure
 
-__all__ = ["NAIVE", "RUN_OUTCOMES", "Effort", "read_distance", "reference_distance", "sweep_work_precision"]
+__all__ = ["NAIVE", "RUN_OUTCOMES", "DistanceEffort", "read_distance", "reference_distance", "sweep_work_precision"]
 
 NAIVE = "naive NumPy"
-RUN_OUTCOMES = tuple(o.value for o in Outcome)
+RUN_OUTCOMES = tuple(o.value for o in RunOutcome)
 Measured = Callable[[LimitSet, float], Run]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Effort:
+class DistanceEffort:
     """How much work: numbers of samples, of the toolkit and of the naive baseline; relative widths asked of methods
     that enclose, and of the reference; and how often a warm run is timed, within how many seconds."""
 
@@ -44,7 +44,7 @@ class Effort:
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Trial:
+class _DistanceTrial:
     """A method with its settings; `setting` is the number of samples or the width (NaN: it has neither)."""
 
     series: str
@@ -86,7 +86,7 @@ def sweep_work_precision(
     states: Sequence[State],
     *,
     eps: float,
-    effort: Effort,
+    effort: DistanceEffort,
     seed: int = 0,
     progress: Callable[[str], None] | None = None,
     command: str | None = None,
@@ -139,21 +139,21 @@ def sweep_work_precision(
     return xr.Dataset(variables, coordinates, {"title": title, "kind": "work_precision", **source})
 
 
-def _trials(effort: Effort, seed: int) -> Iterator[_Trial]:
+def _trials(effort: DistanceEffort, seed: int) -> Iterator[_DistanceTrial]:
     for n in effort.naive_samples:
-        yield _Trial(series=NAIVE, setting=float(n), run=_naive(n, seed))
+        yield _DistanceTrial(series=NAIVE, setting=float(n), run=_naive(n, seed))
     for name, method in METHODS.items():
         options = _options(method)
         if "sampler" in options:
             for sampler in SAMPLERS:
                 for n in effort.samples:
                     given = _given(method, samples=n, sampler=sampler, seed=seed)
-                    yield _Trial(series=f"{name}, {sampler}", setting=float(n), run=_of_method(name, given))
+                    yield _DistanceTrial(series=f"{name}, {sampler}", setting=float(n), run=_of_method(name, given))
         elif "width" in options:
             for width in effort.widths:
-                yield _Trial(series=name, setting=width, run=_of_method(name, _given(method, width=width)))
+                yield _DistanceTrial(series=name, setting=width, run=_of_method(name, _given(method, width=width)))
         else:
-            yield _Trial(series=name, setting=math.nan, run=_of_method(name, _given(method)))
+            yield _DistanceTrial(series=name, setting=math.nan, run=_of_method(name, _given(method)))
 
 
 def _options(method: Method) -> set[str]:
@@ -182,9 +182,9 @@ def _naive(samples: int, seed: int) -> Measured:
 def _record(
     limit: LimitSet,
     eps: float,
-    trial: _Trial,
+    trial: _DistanceTrial,
     reference: Bounds,
-    effort: Effort,
+    effort: DistanceEffort,
     progress: Callable[[str], None] | None,
 ) -> Record:
     name = f"{limit.state.scene.name} {limit.state.label}"

@@ -25,7 +25,7 @@ import numpy as np
 
 from painleve.asymptotics.certify.pieces import Piece
 
-__all__ = ["Candidate", "Search"]
+__all__ = ["BoxSearch", "Candidate"]
 
 ROUNDING = 1e-13
 # Where the constraints leave no room for w, exact multipliers are infinite; finite ones then prove that a box is empty.
@@ -63,7 +63,7 @@ class _Boxes:
         return _Boxes(*(np.concatenate(p) for p in pairs))
 
 
-class Search:
+class BoxSearch:
     """Branch and bound over one piece; every call of `refine` bisects the boxes that matter most.
 
     upper: a rigorous bound, in units of eps, on the distance over the piece, never growing; best: the candidate of the

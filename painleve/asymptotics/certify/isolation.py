@@ -18,15 +18,15 @@ from math import prod
 import flint
 import numpy as np
 
-from painleve.asymptotics.certify.branch_and_bound import Search
+from painleve.asymptotics.certify.branch_and_bound import BoxSearch
 from painleve.asymptotics.certify.pieces import stick_piece
 from painleve.asymptotics.certify.preimage import candidate_member
 from painleve.asymptotics.local import BITS, LocalProblem
 from painleve.asymptotics.member import Member, base_balls, make_member
 from painleve.asymptotics.witness import find_witness
-from painleve.mechanics.jets import Jet, jets
-from painleve.mechanics.neighbourhood import smooth_indicator
+from painleve.exact.jets import Jet, jets
 from painleve.sets import excess_of_segment_from_profile
+from painleve.theory.neighbourhood import smooth_indicator
 
 __all__ = ["Apart", "members_apart", "slips_nowhere"]
 
@@ -98,7 +98,7 @@ def _from_end(problem: LocalProblem, member: Member) -> np.ndarray:
 
 def _reach(problem: LocalProblem, eps: float, a: np.ndarray, effort: int) -> tuple[float, Member | None]:
     """An upper bound on -a.(S - u_tilde)/eps over the sticking members, and the member that goes farthest."""
-    search = Search(stick_piece(problem, eps, -a))
+    search = BoxSearch(stick_piece(problem, eps, -a))
     for _ in range(effort):
         best = search.best.value if search.best is not None else 0.0
         if search.pending <= best + REACH:

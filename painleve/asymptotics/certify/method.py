@@ -18,20 +18,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from painleve.asymptotics.certify.branch_and_bound import Candidate, Search
+from painleve.asymptotics.certify.branch_and_bound import BoxSearch, Candidate
 from painleve.asymptotics.certify.isolation import members_apart, slips_nowhere
 from painleve.asymptotics.certify.pieces import contact_pieces
 from painleve.asymptotics.certify.preimage import candidate_member, free_member
 from painleve.asymptotics.distance import Attained, Distance
-from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.local import LocalProblem, make_local_problem
 from painleve.asymptotics.member import Member
 from painleve.asymptotics.sample import check_eps
 from painleve.asymptotics.witness import find_family
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.errors import InputError
-from painleve.mechanics.neighbourhood import Neighbourhood, Neighbours, neighbours
 from painleve.sets import Bounds
+from painleve.theory.limit_set import LimitSet
+from painleve.theory.neighbourhood import Neighbourhood, Neighbours, neighbours
 
 __all__ = ["CertifyOptions", "certify_distance"]
 
@@ -60,7 +60,7 @@ class _Enclosure:
     lower: float
     upper: float
     member: Member
-    searches: tuple[Search, ...]
+    searches: tuple[BoxSearch, ...]
 
     @property
     def evaluations(self) -> int:
@@ -86,7 +86,7 @@ def certify_distance(limit: LimitSet, eps: float, options: CertifyOptions | None
     apart = near is not None and near.kind is Neighbourhood.ISOLATED and slips_nowhere(problem, eps)
     found = _excess_of_members(problem, eps, _critical(limit) if apart else None, options)
     backward, note = _excess_of_limit(problem, eps, near, apart, found.searches)
-    counts = {b.label: sum(s.evaluations for s in found.searches if s.piece.branch is b) for b in Branch}
+    counts = {b.label: sum(s.evaluations for s in found.searches if s.piece.branch is b) for b in ContactMode}
     bounds = Bounds.between(found.lower, found.upper)
     return Distance(
         limit=limit,
@@ -101,9 +101,9 @@ def certify_distance(limit: LimitSet, eps: float, options: CertifyOptions | None
     )
 
 
-def _critical(limit: LimitSet) -> Branch:
+def _critical(limit: LimitSet) -> ContactMode:
     """Slip on the edge on which gamma = 0."""
-    return Branch.SLIP_PLUS if limit.edge == 1 else Branch.SLIP_MINUS
+    return ContactMode.SLIP_PLUS if limit.edge == 1 else ContactMode.SLIP_MINUS
 
 
 def _ending(bounds: Bounds, evaluations: int, options: CertifyOptions) -> str:
@@ -113,10 +113,10 @@ def _ending(bounds: Bounds, evaluations: int, options: CertifyOptions) -> str:
 
 
 def _excess_of_members(
-    problem: LocalProblem, eps: float, excluded: Branch | None, options: CertifyOptions
+    problem: LocalProblem, eps: float, excluded: ContactMode | None, options: CertifyOptions
 ) -> _Enclosure:
     """Refine the piece of largest bound until it is near enough to the farthest member, or the budget ends."""
-    searches = tuple(Search(piece) for piece in contact_pieces(problem, eps) if piece.branch is not excluded)
+    searches = tuple(BoxSearch(piece) for piece in contact_pieces(problem, eps) if piece.branch is not excluded)
     member = free_member(problem, eps)
     tried: set[Candidate] = set()
     while True:
@@ -133,7 +133,7 @@ def _excess_of_members(
 
 
 def _farthest(
-    problem: LocalProblem, eps: float, member: Member, searches: Iterable[Search], tried: set[Candidate]
+    problem: LocalProblem, eps: float, member: Member, searches: Iterable[BoxSearch], tried: set[Candidate]
 ) -> Member:
     """The member of largest certain distance among this one and those that the searches propose."""
     for search in searches:
@@ -148,7 +148,7 @@ def _farthest(
 
 
 def _excess_of_limit(
-    problem: LocalProblem, eps: float, near: Neighbours | None, apart: bool, searches: Sequence[Search]
+    problem: LocalProblem, eps: float, near: Neighbours | None, apart: bool, searches: Sequence[BoxSearch]
 ) -> tuple[Attained, str]:
     """e(A, A_eps), and how it is known; apart: no member slips on the critical edge."""
     limit = problem.limit
@@ -160,7 +160,7 @@ def _excess_of_limit(
             return Attained(bounds=Bounds.exactly(0.0)), f"e(A, A_eps) = 0 by Theorem 1: {near.reason}"
         note = f"e(A, A_eps) = 0: {near.reason}; witnesses in this ball come within {family.bound:.1e} of all of A"
         return Attained(bounds=Bounds.exactly(0.0), member=family.last), note
-    others = [s.upper for s in searches if s.piece.branch not in (Branch.STICK, _critical(limit))]
+    others = [s.upper for s in searches if s.piece.branch not in (ContactMode.STICK, _critical(limit))]
     found = members_apart(problem, eps, eps * max([1.0, *others]), ROUNDS)
     bounds = Bounds.between(found.lower if apart else 0.0, found.upper)
     note = f"e(A, A_eps) is enclosed to a relative width of {bounds.relative_width:.1e}"

@@ -24,7 +24,7 @@ from painleve.asymptotics.certify.cover import Cover
 from painleve.asymptotics.certify.taylor_models import Models, TaylorModel, expand, make_models, taylor_order
 from painleve.asymptotics.local import BITS, LocalProblem
 from painleve.asymptotics.member import base_balls, jump_balls
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.errors import InputError
 from painleve.mechanics.friction import Segment
 
@@ -62,7 +62,7 @@ class Piece:
     carried: norm of dg with respect to the carried coordinates, which are not among xi; slipping: p > 0 is demanded.
     """
 
-    branch: Branch
+    branch: ContactMode
     label: str
     models: Models
     constraints: int
@@ -206,7 +206,7 @@ class _Build:
 
     def piece(
         self,
-        branch: Branch,
+        branch: ContactMode,
         label: str,
         map_: Map,
         constraints: Sequence[Constraint],
@@ -249,7 +249,7 @@ def contact_pieces(problem: LocalProblem, eps: float) -> Iterator[Piece]:
             yield _impact(build)
             return
         yield from _sticking(build)
-        for sense, branch in ((1, Branch.SLIP_PLUS), (-1, Branch.SLIP_MINUS)):
+        for sense, branch in ((1, ContactMode.SLIP_PLUS), (-1, ContactMode.SLIP_MINUS)):
             yield from _slipping(build, sense, branch)
 
 
@@ -262,7 +262,7 @@ def stick_piece(problem: LocalProblem, eps: float, direction: np.ndarray) -> Pie
 
 def _impact(build: _Build) -> Piece:
     map_ = build.impact_map(build.Y_n, build.a)
-    return build.piece(Branch.FRICTIONLESS, "impact", map_, [build.normal_constraint()], "sphere")
+    return build.piece(ContactMode.FRICTIONLESS, "impact", map_, [build.normal_constraint()], "sphere")
 
 
 def _sticking(build: _Build) -> Iterator[Piece]:
@@ -270,10 +270,10 @@ def _sticking(build: _Build) -> Iterator[Piece]:
     constraints = [build.normal_constraint(), build.cone_constraint(1, 1), build.cone_constraint(-1, 1)]
     near_end = build.eps * _longest_value(build, map_) < build.problem.length  # so no member is beyond the other end
     if build.problem.limit.kind == "segment" and near_end:
-        yield build.piece(Branch.STICK, "sticking, beyond u_tilde", map_, constraints, "beyond")
-        yield build.piece(Branch.STICK, "sticking, beside A", map_, constraints, "across")
+        yield build.piece(ContactMode.STICK, "sticking, beyond u_tilde", map_, constraints, "beyond")
+        yield build.piece(ContactMode.STICK, "sticking, beside A", map_, constraints, "across")
     else:
-        yield build.piece(Branch.STICK, "sticking", map_, constraints, "sphere")
+        yield build.piece(ContactMode.STICK, "sticking", map_, constraints, "sphere")
 
 
 def _longest_value(build: _Build, map_: Map) -> float:
@@ -283,7 +283,7 @@ def _longest_value(build: _Build, map_: Map) -> float:
     return float((np.linalg.norm(size[:, : build.d], axis=1) + np.linalg.norm(size[:, build.d :], axis=1)).max())
 
 
-def _slipping(build: _Build, sense: int, branch: Branch) -> Iterator[Piece]:
+def _slipping(build: _Build, sense: int, branch: ContactMode) -> Iterator[Piece]:
     p, cover = build.edge(sense), build.contact()
     lowest, highest = cover.bounds([p])
     if lowest.min() > 0.0:
@@ -296,7 +296,9 @@ def _slipping(build: _Build, sense: int, branch: Branch) -> Iterator[Piece]:
         yield from _slipping_near_zero(build, cover, sense, branch, p)
 
 
-def _slipping_near_zero(build: _Build, cover: Cover, sense: int, branch: Branch, p: TaylorModel) -> Iterator[Piece]:
+def _slipping_near_zero(
+    build: _Build, cover: Cover, sense: int, branch: ContactMode, p: TaylorModel
+) -> Iterator[Piece]:
     """Slip where p may vanish: Lambda runs from 0 to where the tip comes to rest."""
     eps, problem = build.eps, build.problem
     ray = build.ray(sense)

@@ -8,7 +8,7 @@ import numpy as np
 from painleve.asymptotics.certify.branch_and_bound import Candidate
 from painleve.asymptotics.local import BITS, LocalProblem
 from painleve.asymptotics.member import Member, base_balls, make_member, row_balls
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 
 __all__ = ["candidate_member", "free_member"]
 
@@ -82,7 +82,7 @@ def _velocity(problem: LocalProblem, eps: float, candidate: Candidate, dq: Balls
         if piece.lam is None:
             push = flint.arb(eps * shrink / 2.0) / squared.sqrt()
             return [flint.arb((x - push * y).mid()) for x, y in zip(dv, w_n, strict=True)]
-        row = problem.kernels.rows.index("edge_plus" if piece.branch is Branch.SLIP_PLUS else "edge_minus")
+        row = problem.kernels.rows.index("edge_plus" if piece.branch is ContactMode.SLIP_PLUS else "edge_minus")
         impulse = flint.arb(piece.shift) + flint.arb(piece.unit) * flint.arb(candidate.lam)
         excess = (v_n + impulse * row_balls(problem, dq)[row]) / squared
         return [flint.arb((x - excess * y).mid()) for x, y in zip(dv, w_n, strict=True)]

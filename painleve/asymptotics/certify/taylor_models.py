@@ -19,7 +19,7 @@ import sympy as sp
 from painleve.asymptotics.local import BITS, LocalProblem
 from painleve.asymptotics.member import base_balls
 from painleve.errors import InputError
-from painleve.mechanics.jets import Jet, jets, monomials
+from painleve.exact.jets import Jet, jets, monomials
 
 __all__ = ["Models", "TaylorModel", "expand", "make_models", "taylor_order"]
 

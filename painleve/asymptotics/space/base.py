@@ -8,16 +8,16 @@ from functools import partial
 import flint
 import sympy as sp
 
-from painleve.asymptotics.least_energy import inverse_of_two, sticking_impulse
-from painleve.asymptotics.limit_set import LimitSet
 from painleve.core.space.offset import SpaceBase
 from painleve.core.space.polygon_offset import PolygonBase
 from painleve.errors import InputError
-from painleve.mechanics.balls import ball
+from painleve.exact.balls import ball
+from painleve.exact.signs import Sign, exact_sign
 from painleve.mechanics.derive import Derivation, derive
 from painleve.mechanics.friction import Polygon
-from painleve.mechanics.signs import Sign, exact_sign
 from painleve.mechanics.state import State
+from painleve.theory.least_energy import inverse_of_two, sticking_impulse
+from painleve.theory.limit_set import LimitSet
 
 __all__ = ["space_base"]
 

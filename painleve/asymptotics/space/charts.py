@@ -19,11 +19,11 @@ from typing import Protocol
 import numpy as np
 
 from painleve.asymptotics.space.ball import SpaceBall
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.space.polygon_offset import PolygonBase
 from painleve.mechanics.friction import Polygon
 
-__all__ = ["Along", "Chart", "Sticking", "Whole", "charts_of"]
+__all__ = ["Along", "SpaceChart", "Sticking", "Whole", "charts_of"]
 
 SAMPLE = 16384
 APART = 0.4  # two starts, at the least
@@ -32,7 +32,7 @@ VANISHING = 1e-12  # relative to all slopes: p has none, but for the rounding of
 DEPTHS = 15  # values of m that a start is tried with
 
 
-class Chart(Protocol):
+class SpaceChart(Protocol):
     """Coordinates z (size, n) of some pairs (x, dv)."""
 
     name: str
@@ -78,12 +78,12 @@ class Whole:
         rows, changes = self.ball.rows(x)
         inside = np.min(self.ball.conditions(x, dv, rows, changes)[2:], axis=0) >= 0.0
         value, branch = self.ball.values(x, dv, rows, changes)
-        branch = np.where(inside, branch, Branch.FREE)
+        branch = np.where(inside, branch, ContactMode.FREE)
         z, chosen = np.vstack([x, dv]), [np.empty((len(x) + len(dv), 0))]
-        for code in (Branch.STICK, Branch.SLIP):
+        for code in (ContactMode.STICK, ContactMode.SLIP):
             self.ball.counts[code.label] += int(np.sum(branch == code))
             chosen.append(_best(z, np.where(branch == code, value, -np.inf), count))
-        self.ball.counts["free"] += int(np.sum(branch == Branch.FREE))
+        self.ball.counts["free"] += int(np.sum(branch == ContactMode.FREE))
         return np.hstack(chosen)
 
 
@@ -225,9 +225,9 @@ class Sticking:
         return _best(z, np.where(conditions[2:].min(axis=0) >= 0.0, value, -np.inf), count)
 
 
-def charts_of(ball: SpaceBall) -> list[Chart]:
+def charts_of(ball: SpaceBall) -> list[SpaceChart]:
     """The charts that a problem needs."""
-    found: list[Chart] = [Whole(ball)]
+    found: list[SpaceChart] = [Whole(ball)]
     if ball.problem.critical_edge and ball.problem.length > 0.0:
         found += [Along(ball)]
     if not isinstance(ball.problem.limit.state.scene.friction, Polygon):

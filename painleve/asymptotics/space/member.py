@@ -17,13 +17,13 @@ from typing import TypeVar
 
 import flint
 
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 
 __all__ = ["Contact", "conic_impulse", "polygon_impulse"]
 
 WIDENINGS = (4, 2**10, 2**30)  # of the first Newton correction, to a ball that holds the root
 Balls = Sequence[flint.arb]
-Impulse = tuple[flint.arb, flint.arb, flint.arb, Branch]
+Impulse = tuple[flint.arb, flint.arb, flint.arb, ContactMode]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,9 +87,9 @@ def conic_impulse(contact: Contact, p: flint.arb) -> Impulse:
     reach = _norm(x, y)
     excess = p * reach + size * (reach + x) - nu
     if excess <= 0:
-        r_n, branch = aligned.normal(x, y), Branch.STICK
+        r_n, branch = aligned.normal(x, y), ContactMode.STICK
     elif excess > 0:
-        (r_n, x, y), branch = _slip(aligned, size, p), Branch.SLIP
+        (r_n, x, y), branch = _slip(aligned, size, p), ContactMode.SLIP
     else:
         raise ArithmeticError("stick or slip cannot be decided at these offsets")
     return r_n, x * e_1 - y * e_2, x * e_2 + y * e_1, branch
@@ -175,13 +175,13 @@ def polygon_impulse(contact: Contact, vertices: Sequence[Balls], p: Balls) -> Im
     n, stick = len(vertices), contact.sticking()
     depths = [_depth(contact, vertices, p, i, (i + 1) % n, *stick) for i in range(n)]
     if all(depth >= 0 for depth in depths):
-        return contact.normal(*stick), *stick, Branch.STICK
+        return contact.normal(*stick), *stick, ContactMode.STICK
     if not any(depth < 0 for depth in depths):
         raise ArithmeticError("stick or slip cannot be decided at these offsets")
     for i in range(n):
         found = _on_vertex(contact, vertices, p, i) or (_on_edge(contact, vertices, p, i) if depths[i] < 0 else None)
         if found is not None:
-            return *found, Branch.SLIP
+            return *found, ContactMode.SLIP
     raise ArithmeticError("the least impulse cannot be enclosed at these offsets")
 
 

@@ -14,7 +14,6 @@ import numpy as np
 
 from painleve.asymptotics.distance import Attained, Distance
 from painleve.asymptotics.free_member import free_member, is_inside
-from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.local import Arithmetic, make_local_problem
 from painleve.asymptotics.member import Member, make_member
 from painleve.asymptotics.sample import KINDS, SampleOptions, sample_distance
@@ -22,6 +21,7 @@ from painleve.asymptotics.space.ball import SpaceBall
 from painleve.asymptotics.space.search import SpaceFound, search_in_space
 from painleve.asymptotics.witness import find_family
 from painleve.sets import Bounds
+from painleve.theory.limit_set import LimitSet
 
 __all__ = ["optimise_in_space"]
 

@@ -6,7 +6,7 @@ chord across that ray, of half-width
 
     Y = sqrt(2 Lambda (nu - Lambda p)/a) (1 + o(1)),      p = a - |b| of the size of eps, of either sign:
 
-the ellipse or hyperbola of section 2 of the project's notes is that thin. Where the jump ends in slip, the tip's
+the ellipse or hyperbola of section 2 of docs/theory.md is that thin. Where the jump ends in slip, the tip's
 velocity kappa e_perp after it (e = b/|b|, kappa != 0) is across the ray, so that energy is lost by going to the end of
 the chord: y = -sign(kappa) Y. That moves S off the segment sideways by O(sqrt(eps)), and along it, by what minimises
 Q_11 Delta^2/2 - Q_12 Delta y - |kappa| Y(lambda_tilde + Delta), Q = C - b b^T/a in the frame (e, e_perp):
@@ -27,10 +27,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from painleve.asymptotics.limit_set import LimitSet
 from painleve.asymptotics.local import LocalProblem, make_local_problem
 from painleve.core.space.offset import SpaceBase
 from painleve.errors import InputError
+from painleve.theory.limit_set import LimitSet
 
 __all__ = ["Root", "root_rate"]
 
@@ -61,7 +61,7 @@ def root_rate(limit: LimitSet, isolated: bool) -> Root:
         raise InputError(
             f"{where} has {len(problem.shape)} coordinates on which the law depends; at most 2 are searched"
         )
-    search = _Search(problem, isolated)
+    search = _RootSearch(problem, isolated)
     squared, x, nu = search.best()
     dq = np.zeros(problem.dimension)
     dq[list(problem.shape)] = x
@@ -70,7 +70,7 @@ def root_rate(limit: LimitSet, isolated: bool) -> Root:
     return Root(C=float(np.sqrt(squared)), dq=dq, dv=-(nu + search.turn @ x) * w_n / (w_n @ w_n))
 
 
-class _Search:
+class _RootSearch:
     """Numbers of the base state, and the distance as a function of the offsets."""
 
     def __init__(self, problem: LocalProblem, isolated: bool) -> None:

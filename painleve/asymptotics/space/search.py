@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from painleve.asymptotics.space.ball import SpaceBall
-from painleve.asymptotics.space.charts import Chart, charts_of
+from painleve.asymptotics.space.charts import SpaceChart, charts_of
 
 __all__ = ["SpaceFound", "search_in_space"]
 
@@ -44,7 +44,7 @@ def search_in_space(ball: SpaceBall, starts: int) -> SpaceFound | None:
     return max((f for f in found if f is not None), key=lambda f: f.value, default=None)
 
 
-def _search(chart: Chart, count: int) -> SpaceFound | None:
+def _search(chart: SpaceChart, count: int) -> SpaceFound | None:
     starts = chart.starts(count)
     tops = [_ascend(chart, z) for z in starts.T]
     if not tops:
@@ -56,7 +56,7 @@ def _search(chart: Chart, count: int) -> SpaceFound | None:
     return SpaceFound(value=value, x=x[:, 0], dv=dv[:, 0], chart=chart.name, error=gain)
 
 
-def _polished(chart: Chart, value: float, z: np.ndarray) -> tuple[float, np.ndarray, float]:
+def _polished(chart: SpaceChart, value: float, z: np.ndarray) -> tuple[float, np.ndarray, float]:
     """(value, place, what was added): clouds and ascents in turn, as long as they add something."""
     first = value
     for _ in range(POLISHES):
@@ -69,7 +69,7 @@ def _polished(chart: Chart, value: float, z: np.ndarray) -> tuple[float, np.ndar
     return value, z, value - first
 
 
-def _ascend(chart: Chart, start: np.ndarray) -> tuple[float, np.ndarray]:
+def _ascend(chart: SpaceChart, start: np.ndarray) -> tuple[float, np.ndarray]:
     """(value, place): the better one of the start and of where SLSQP goes from there."""
     scale = max(1.0, _safe_value(chart, start))
     steps = np.hstack([np.zeros((start.size, 1)), DIFFERENCE * np.eye(start.size), -DIFFERENCE * np.eye(start.size)])
@@ -101,17 +101,17 @@ def _ascend(chart: Chart, start: np.ndarray) -> tuple[float, np.ndarray]:
     return max(((_safe_value(chart, z), z) for z in ends), key=lambda end: end[0])
 
 
-def _safe_value(chart: Chart, z: np.ndarray) -> float:
+def _safe_value(chart: SpaceChart, z: np.ndarray) -> float:
     """The value at z, -inf where z is not the place of a member."""
     return float(_values(chart, z[:, None])[0])
 
 
-def _values(chart: Chart, z: np.ndarray) -> np.ndarray:
+def _values(chart: SpaceChart, z: np.ndarray) -> np.ndarray:
     value, conditions = chart.evaluate(z)
     return np.where(conditions.min(axis=0) >= -TOLERANCE, value, -np.inf)
 
 
-def _cloud(chart: Chart, value: float, z: np.ndarray) -> tuple[float, np.ndarray]:
+def _cloud(chart: SpaceChart, value: float, z: np.ndarray) -> tuple[float, np.ndarray]:
     rng, radius = np.random.default_rng(0), WIDEST
     lower, upper = np.array(chart.bounds).T
     for _ in range(ROUNDS):

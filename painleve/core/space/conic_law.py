@@ -1,5 +1,5 @@
-"""Moreau's contact law S in space with a disc for the friction section, one point at a time (paper, law (7); the
-project's notes, section 2).
+"""Moreau's contact law S in space with a disc for the friction section, one point at a time (paper, law (7);
+docs/theory.md, section 2).
 
 Where the normal velocity is cancelled, nu = -v_n, the impulses |r_t| <= r_n fill the convex region a|r_t| + b.r_t <= nu
 of the tangent plane. Its boundary is a conic with a focus at the origin and the eccentricity |b|/a: an ellipse where
@@ -15,7 +15,7 @@ arc are the points of contact of the tangents from there.
 from math import hypot, inf, sqrt
 
 from painleve._jit import jit
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.space.quartic import bracketed_root
 from painleve.core.space.tangent_plane import (
     ROUNDING,
@@ -26,7 +26,7 @@ from painleve.core.space.tangent_plane import (
     tangent_energy,
 )
 
-FREE, STICK, SLIP = int(Branch.FREE), int(Branch.STICK), int(Branch.SLIP)
+FREE, STICK, SLIP = int(ContactMode.FREE), int(ContactMode.STICK), int(ContactMode.SLIP)
 
 
 @jit

@@ -1,4 +1,4 @@
-"""All solutions of Coulomb's one-step problem in space, in contact coordinates (the project's notes, section 2).
+"""All solutions of Coulomb's one-step problem in space, in contact coordinates (docs/theory.md, section 2).
 
 The section is the unit disc; a disc of another radius or an ellipse is brought to it by a linear change of the
 tangents, which leaves maximal dissipation as it is. Given G = [[a, b], [b, C]] and (v_n, v_t), a solution is an
@@ -18,9 +18,9 @@ import math
 import numpy as np
 
 from painleve._jit import jit
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 
-FREE, STICK, SLIP = int(Branch.FREE), int(Branch.STICK), int(Branch.SLIP)
+FREE, STICK, SLIP = int(ContactMode.FREE), int(ContactMode.STICK), int(ContactMode.SLIP)
 
 MOST_SOLUTIONS = 6
 """Open, stick and four slips: the rows that `found` needs."""

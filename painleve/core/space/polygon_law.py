@@ -1,5 +1,5 @@
 """Moreau's contact law S in space with a convex polygon for the friction section, one point at a time (paper, law (7);
-the project's notes, section 2).
+docs/theory.md, section 2).
 
 The impulses are sums of x_i (1, s_i) with x_i >= 0 over the vertices s_i; those that cancel the normal velocity have
 sum x_i p_i = nu = -v_n, where p_i = a + b.s_i. In the plane of r_t they fill a convex polygon, unbounded where some p_i
@@ -9,10 +9,10 @@ is not positive: two neighbours span a segment of its boundary if both p are pos
 from math import inf
 
 from painleve._jit import jit
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.space.tangent_plane import is_definite, made_definite, scales, sticking_point, tangent_energy
 
-FREE, STICK, SLIP = int(Branch.FREE), int(Branch.STICK), int(Branch.SLIP)
+FREE, STICK, SLIP = int(ContactMode.FREE), int(ContactMode.STICK), int(ContactMode.SLIP)
 
 
 @jit

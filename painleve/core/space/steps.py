@@ -9,13 +9,13 @@ import math
 import numpy as np
 
 from painleve._jit import jit
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Change
 from painleve.core.space.conic_law import disc_impulse
 from painleve.core.space.polygon_law import polygon_impulse
 from painleve.core.steps import LOST_SPEED, SLIP_FACTOR, STUCK_FACTOR, is_tangential
 
-STICK = int(Branch.STICK)
+STICK = int(ContactMode.STICK)
 ORDINARY, FRICTIONAL_IMPACT = int(Change.ORDINARY), int(Change.FRICTIONAL_IMPACT)
 JUMP_WITHOUT_COLLISION = int(Change.JUMP_WITHOUT_COLLISION)
 

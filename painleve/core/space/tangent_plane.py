@@ -1,4 +1,4 @@
-"""The kinetic energy on the plane of the impulses that cancel the normal velocity (the project's notes, section 2).
+"""The kinetic energy on the plane of the impulses that cancel the normal velocity (docs/theory.md, section 2).
 
 With nu = -v_n > 0 these are r_n = (nu - b.r_t)/a, and the energy is 1/2 r_t.Q r_t + w.r_t, where Q = C - b b'/a is the
 compliance of the tip that is held on the constraint and w = v_t + b nu/a its tangential velocity after a frictionless

@@ -5,11 +5,11 @@ import math
 import numpy as np
 
 from painleve._jit import jit
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.space.conic_law import disc_impulse
 from painleve.core.space.coulomb import COLUMNS, MOST_SOLUTIONS, coulomb_disc
 
-STICK = int(Branch.STICK)
+STICK = int(ContactMode.STICK)
 
 TOUCH = 1e-13
 """-v_n/|v_t| at which S stands for its limit u_tilde: S is Lipschitz where v_n < 0, so the error is of this order."""

@@ -15,10 +15,10 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.integrate import Radau
 
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Ending
-from painleve.dynamics.arc import Dense, Place, follow
-from painleve.dynamics.grid import Grid
+from painleve.dynamics.arc import ArcPoint, Dense, follow
+from painleve.dynamics.grid import TimeGrid
 from painleve.dynamics.modes import ContactPoint
 from painleve.dynamics.recorder import Recorder
 from painleve.dynamics.scheme import Integrated, Progress
@@ -40,14 +40,14 @@ def contact_force(point: ContactPoint, options: Mapping[str, float]) -> tuple[fl
     normal = spring_force(point, options)
     if not point.planar:
         return normal, 0.0
-    mode = Branch.SLIP_PLUS if point.v_t < 0.0 else Branch.SLIP_MINUS
+    mode = ContactMode.SLIP_PLUS if point.v_t < 0.0 else ContactMode.SLIP_MINUS
     return normal, normal * point.ratio(mode) * math.tanh(abs(point.v_t) / options["slip_speed"])
 
 
-class _Run:
+class _CompliantRun:
     """One integration: arcs of open and of closed contact."""
 
-    def __init__(self, start: Start, grid: Grid, options: Mapping[str, float], progress: Progress) -> None:
+    def __init__(self, start: Start, grid: TimeGrid, options: Mapping[str, float], progress: Progress) -> None:
         self.start, self.grid, self.options, self.progress, self.d = start, grid, options, progress, len(start.q)
         self.recorder, self.evaluations, self.arcs = Recorder(start), 0, 0
         self.place = self.recorder.last
@@ -102,7 +102,7 @@ class _Run:
             self.closed = not self.closed
         return Ending.REACHED_END if self.arcs <= MOST_ARCS else Ending.TOO_MANY_EVENTS
 
-    def accept(self, place: Place, dense: Dense) -> None:
+    def accept(self, place: ArcPoint, dense: Dense) -> None:
         """The grid's instants within a step; the state moves to its end."""
         inside = self.recorder.passed(self.grid, place.t)
         if len(inside):
@@ -114,9 +114,9 @@ class _Run:
         self.recorder.add(t, y, _branches(self.start, t, y, self.recorder.last.y, self.options))
 
 
-def integrate(start: Start, grid: Grid, options: Mapping[str, float], progress: Progress) -> Trajectory:
+def integrate(start: Start, grid: TimeGrid, options: Mapping[str, float], progress: Progress) -> Trajectory:
     """The trajectory on the grid's instants."""
-    return _Run(start, grid, options, progress).go()
+    return _CompliantRun(start, grid, options, progress).go()
 
 
 def _branches(
@@ -128,9 +128,9 @@ def _branches(
     codes = np.zeros(len(t), np.int8)
     for i in np.flatnonzero(pushed):
         point = ContactPoint.at(start, t[i], y[i, :d], y[i, d : 2 * d])
-        slipping = Branch.SLIP_PLUS if point.v_t < 0.0 else Branch.SLIP_MINUS
+        slipping = ContactMode.SLIP_PLUS if point.v_t < 0.0 else ContactMode.SLIP_MINUS
         at_rest = abs(point.v_t) <= options["slip_speed"]
-        codes[i] = Branch.FRICTIONLESS if not point.planar else Branch.STICK if at_rest else slipping
+        codes[i] = ContactMode.FRICTIONLESS if not point.planar else ContactMode.STICK if at_rest else slipping
     return codes
 
 

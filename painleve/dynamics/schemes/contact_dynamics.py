@@ -1,4 +1,4 @@
-"""The Contact Dynamics scheme of the paper's section 2, to the letter (the project's notes, section 7).
+"""The Contact Dynamics scheme of the paper's section 2, to the letter (docs/theory.md, section 7).
 
 q_{i+1} = q_i + h u_i,  v = u_i + h M^-1(q_{i+1}) f(t_{i+1}, q_{i+1}, u_i),  u_{i+1} = S(q_{i+1}, v)
 """

@@ -13,11 +13,11 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from scipy.integrate import DOP853
 
-from painleve.core.codes import Branch
+from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Change, Ending
 from painleve.core.steps import contact_problem
-from painleve.dynamics.arc import Dense, Event, Place, follow
-from painleve.dynamics.grid import Grid
+from painleve.dynamics.arc import ArcPoint, Dense, Event, follow
+from painleve.dynamics.grid import TimeGrid
 from painleve.dynamics.modes import ContactPoint, Mode, closed_modes
 from painleve.dynamics.recorder import Recorder
 from painleve.dynamics.scheme import Integrated, Progress
@@ -37,10 +37,10 @@ class _Stop(Exception):
         self.ending, self.detail = ending, detail
 
 
-class _Run:
+class _EventDrivenRun:
     """One integration: the state moves from arc to arc."""
 
-    def __init__(self, start: Start, grid: Grid, options: Mapping[str, float], progress: Progress) -> None:
+    def __init__(self, start: Start, grid: TimeGrid, options: Mapping[str, float], progress: Progress) -> None:
         self.start, self.grid, self.options, self.progress = start, grid, options, progress
         self.d, self.recorder, self.events = len(start.q), Recorder(start), 0
         self.place, self.mode = self.recorder.last, Mode.FREE
@@ -108,7 +108,7 @@ class _Run:
         force = point.force(mode)
         return np.concatenate([y[self.d : 2 * self.d], point.acceleration + point.response(*force), force])
 
-    def accept(self, place: Place, dense: Dense) -> None:
+    def accept(self, place: ArcPoint, dense: Dense) -> None:
         """The grid's instants within a step; the state moves to its end."""
         inside = self.recorder.passed(self.grid, place.t)
         if len(inside):
@@ -123,7 +123,7 @@ class _Run:
         """Change the velocity by an impulse at the contact."""
         y = self.y.copy()
         y[self.d : 2 * self.d] += self.point(self.t, y).response(normal, tangential)
-        self.place = Place(self.t, y)
+        self.place = ArcPoint(self.t, y)
 
     def mode_events(self, mode: Mode) -> dict[Event, Callable[[], Mode]]:
         """Functions that fall through zero when a mode ends, and what follows."""
@@ -197,7 +197,7 @@ class _Run:
         self.place.y[2 * self.d :] += normal, tangential
         change = Change.FRICTIONAL_IMPACT if point.planar else Change.IMPACT
         self.recorder.add(np.array([self.t]), self.y[None, :], np.array([code]), change)
-        return {Branch.SLIP_PLUS: -1, Branch.SLIP_MINUS: 1}.get(Branch(code), 0)
+        return {ContactMode.SLIP_PLUS: -1, ContactMode.SLIP_MINUS: 1}.get(ContactMode(code), 0)
 
     def choose(self, slip: int) -> Mode:
         """The one mode that solves the contact problem. Raises _Stop where there is none, or more than one."""
@@ -211,9 +211,9 @@ class _Run:
         return modes[0]
 
 
-def integrate(start: Start, grid: Grid, options: Mapping[str, float], progress: Progress) -> Trajectory:
+def integrate(start: Start, grid: TimeGrid, options: Mapping[str, float], progress: Progress) -> Trajectory:
     """The trajectory on the grid's instants and at every event."""
-    return _Run(start, grid, options, progress).go()
+    return _EventDrivenRun(start, grid, options, progress).go()
 
 
 SCHEME = Integrated(

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from painleve.errors import InputError, nearest
-from painleve.mechanics.parse import parse_expression
+from painleve.exact.parse import parse_expression
 from painleve.mechanics.scene_file.document import Document, Number
 from painleve.mechanics.scene_file.lines import Path
 from painleve.mechanics.scene_file.names import shown, why_no_latex, why_no_sentence

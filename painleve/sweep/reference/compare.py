@@ -7,15 +7,15 @@ from enum import Enum
 
 import sympy as sp
 
-from painleve.mechanics.signs import Sign, exact_sign
-from painleve.sweep.reference.facts import Fact, Kind
+from painleve.exact.signs import Sign, exact_sign
+from painleve.sweep.reference.facts import Fact, FactKind
 
-__all__ = ["Found", "Reproduction", "Status", "compare"]
+__all__ = ["FactStatus", "Finding", "Reproduction", "compare"]
 
 NUMERICAL = 1e-12  # how near a numerical second route has to come, relative
 
 
-class Status(Enum):
+class FactStatus(Enum):
     """Agreement, exactly or to every printed digit; disagreement; or what lies outside of what this package models."""
 
     REPRODUCED = "reproduced"
@@ -24,7 +24,7 @@ class Status(Enum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Found:
+class Finding:
     """A value found without the published one: exact, a float with a bound on its error, or a label.
 
     `route` says how; `gap` is the largest relative difference from a second, numerical route where there is one;
@@ -43,12 +43,12 @@ class Reproduction:
     """A fact, what was found, their difference as text (empty for labels) and the status."""
 
     fact: Fact
-    found: Found
+    found: Finding
     difference: str
-    status: Status
+    status: FactStatus
 
 
-def compare(fact: Fact, found: Found) -> Reproduction:
+def compare(fact: Fact, found: Finding) -> Reproduction:
     """Exact values must be equal, decimals round to the printed digits at both ends of their error, labels be the same.
 
     A numerical second route that is off by more than 1e-12 makes a difference too.
@@ -56,21 +56,21 @@ def compare(fact: Fact, found: Found) -> Reproduction:
     agrees, difference = _agreement(fact, found)
     if found.gap is not None and not found.gap <= NUMERICAL:
         agrees, difference = False, f"{found.gap:.1e} between routes"
-    status = Status.REPRODUCED if agrees else Status.DIFFERS
+    status = FactStatus.REPRODUCED if agrees else FactStatus.DIFFERS
     if found.obstacle:
-        status = Status.NOT_REPRODUCIBLE
+        status = FactStatus.NOT_REPRODUCIBLE
     return Reproduction(fact=fact, found=found, difference=difference, status=status)
 
 
-def _agreement(fact: Fact, found: Found) -> tuple[bool, str]:
-    if fact.kind is Kind.LABEL:
+def _agreement(fact: Fact, found: Finding) -> tuple[bool, str]:
+    if fact.kind is FactKind.LABEL:
         return found.value == fact.value, ""
-    if fact.kind is Kind.DECIMAL:
+    if fact.kind is FactKind.DECIMAL:
         value = float(found.value)
         ends = {f"{value + side * found.error:.{fact.decimals}f}" for side in (-1.0, 1.0)}
         return ends == {fact.value}, f"{value - float(fact.value):+.1e}"
     difference = sp.simplify(sp.sympify(found.value, strict=True) - fact.expression)
-    if fact.kind is Kind.EXACT:
+    if fact.kind is FactKind.EXACT:
         zero = exact_sign(difference).sign is Sign.ZERO
         return zero, "0, exactly" if zero else f"{float(difference):+.1e}"
     return difference == 0, "0, identically" if difference == 0 else str(difference)

@@ -11,7 +11,7 @@ import xarray as xr
 from painleve.kernels.compiled import make_kernels
 from painleve.mechanics.library import load_scene
 from painleve.store import provenance
-from painleve.sweep.reference.compare import Reproduction, Status
+from painleve.sweep.reference.compare import FactStatus, Reproduction
 from painleve.sweep.reference.facts import Fact
 from painleve.sweep.reference.rod import ALPHA, MU, T, critical_friction
 from painleve.sweep.reference.slip import Arc
@@ -25,7 +25,7 @@ ANGLES = np.radians(np.linspace(5.0, 88.0, 167))
 DISTANCES = np.logspace(0.0, np.log10(2.0 * NEAREST), 140)
 SHOWN = 7  # slips from each angle
 EDGES_AT = (5 / 3, 2.0)
-STATUSES = tuple(status.name.lower() for status in Status)
+STATUSES = tuple(status.name.lower() for status in FactStatus)
 
 
 def as_dataset(found: Sequence[Reproduction], *, seed: int = 0, command: str | None = None) -> xr.Dataset:

@@ -13,9 +13,9 @@ from typing import TypeVar
 import sympy as sp
 
 from painleve.errors import InputError
-from painleve.mechanics.parse import parse_expression, parse_number
+from painleve.exact.parse import parse_expression, parse_number
 
-__all__ = ["Basis", "Fact", "Kind", "Source", "load_facts"]
+__all__ = ["Basis", "Fact", "FactKind", "Source", "load_facts"]
 
 DOI = re.compile(r"10\.\d{4,9}/\S+")
 ARXIV = re.compile(r"\d{4}\.\d{4,5}")
@@ -24,7 +24,7 @@ WORDS = {str: "text", int: "a whole number", list: "a list", dict: "a table"}
 E = TypeVar("E", bound=Enum)
 
 
-class Kind(Enum):
+class FactKind(Enum):
     """What a published value is, and so how a found one is compared with it."""
 
     EXACT = "exact"
@@ -67,7 +67,7 @@ class Fact:
 
     id: str
     statement: str
-    kind: Kind
+    kind: FactKind
     value: str
     basis: Basis
     source: Source
@@ -78,9 +78,9 @@ class Fact:
     def expression(self) -> sp.Expr:
         """The value as an exact expression in its symbols, which are positive. Raises InputError for a label."""
         where = f"fact {self.id}: value"
-        if self.kind is Kind.LABEL:
+        if self.kind is FactKind.LABEL:
             raise InputError(f"{where}: {self.value!r} is a label and not a number")
-        if self.kind is Kind.FORMULA:
+        if self.kind is FactKind.FORMULA:
             names = {name: sp.Symbol(name, positive=True) for name in self.symbols}
             return parse_expression(self.value, names, where=where)
         return parse_number(self.value, where=where)
@@ -127,7 +127,7 @@ def _fact(where: str, entry: object, sources: Mapping[str, Source]) -> Fact:
     fact = Fact(
         **fields
         | {  # type: ignore[arg-type]
-            "kind": _choice(where, "kind", fields["kind"], Kind),
+            "kind": _choice(where, "kind", fields["kind"], FactKind),
             "basis": _choice(where, "basis", fields["basis"], Basis),
             "source": sources[str(fields["source"])],
             "symbols": tuple(symbols),  # type: ignore[arg-type]
@@ -139,11 +139,11 @@ def _fact(where: str, entry: object, sources: Mapping[str, Source]) -> Fact:
 
 def _check_value(where: str, fact: Fact) -> None:
     """The value can be read as its kind, and uses all symbols that it declares."""
-    if bool(fact.symbols) != (fact.kind is Kind.FORMULA):
+    if bool(fact.symbols) != (fact.kind is FactKind.FORMULA):
         raise InputError(f"{where}: symbols go with a formula, and a formula needs them")
-    if fact.kind is Kind.DECIMAL and not DECIMAL.fullmatch(fact.value):
+    if fact.kind is FactKind.DECIMAL and not DECIMAL.fullmatch(fact.value):
         raise InputError(f"{where}: value {fact.value!r} is not a decimal number such as 1.25")
-    if fact.kind is not Kind.LABEL:
+    if fact.kind is not FactKind.LABEL:
         unused = set(fact.symbols) - {symbol.name for symbol in fact.expression.free_symbols}
         if unused:
             raise InputError(f"{where}: the value does not depend on {', '.join(sorted(unused))}")

@@ -7,13 +7,13 @@ from types import MappingProxyType
 
 from painleve.errors import InputError
 from painleve.sweep.reference import contact, impacts, rod, slips
-from painleve.sweep.reference.compare import Found, Reproduction, compare
+from painleve.sweep.reference.compare import Finding, Reproduction, compare
 from painleve.sweep.reference.facts import Fact
 
 __all__ = ["ROUTES", "reproduce"]
 
 # quick: fewer random states, slips and stiffnesses; seed: of the random states
-ROUTES: Mapping[str, Callable[[bool, int], Found]] = MappingProxyType(
+ROUTES: Mapping[str, Callable[[bool, int], Finding]] = MappingProxyType(
     {
         "least_friction": lambda quick, seed: rod.find_least_friction(slope=False),
         "least_friction_slope": lambda quick, seed: rod.find_least_friction(slope=True),

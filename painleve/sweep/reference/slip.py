@@ -20,14 +20,14 @@ from scipy.optimize import brentq
 
 from painleve.mechanics.library import load_scene
 
-__all__ = ["Arc", "ArcEnd", "Slip", "SlipFlow", "derive_slip", "make_flow"]
+__all__ = ["Arc", "ArcEnd", "SlipFlow", "SlipMotion", "derive_slip", "make_flow"]
 
 RTOL, ATOL = 1e-13, 1e-15
 LONGEST = 1e6  # in tau: an arc decays like exp(-tau) into the point, so this is never reached
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Slip:
+class SlipMotion:
     """push and edge of F = push/edge (edge > 0 without friction), and d omega/d tau, in positive symbols."""
 
     push: sp.Expr
@@ -41,7 +41,7 @@ class Slip:
 
 
 @lru_cache(maxsize=1)
-def derive_slip() -> Slip:
+def derive_slip() -> SlipMotion:
     """The slip of the slender rod with I = m l^2/alpha; symbols m, l, alpha, mu, gravity, theta, omega."""
     scene = load_scene("slender_rod")
     m, length, alpha, mu, gravity, theta, omega = sp.symbols("m l alpha mu gravity theta omega", positive=True)
@@ -57,7 +57,7 @@ def derive_slip() -> Slip:
     push, edge = sp.fraction(sp.factor(solution[force]))
     if edge.xreplace({mu: sp.Integer(0), theta: sp.pi / 4, alpha: sp.Integer(1)}) < 0:
         push, edge = -push, -edge
-    return Slip(push=push, edge=edge, turn=sp.cancel(solution[accelerations[2]] * edge))
+    return SlipMotion(push=push, edge=edge, turn=sp.cancel(solution[accelerations[2]] * edge))
 
 
 class ArcEnd(Enum):

@@ -1,4 +1,4 @@
-"""The one-step contact problem at a configuration and a velocity, in exact numbers (the project's notes, section 1)."""
+"""The one-step contact problem at a configuration and a velocity, in exact numbers (docs/theory.md, section 1)."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from fractions import Fraction
 import sympy as sp
 
 from painleve.errors import InputError
-from painleve.mechanics.balls import ball
+from painleve.exact.balls import ball
+from painleve.exact.parse import exact_number
+from painleve.exact.signs import Sign, Signed, exact_sign
 from painleve.mechanics.derive import derive
 from painleve.mechanics.friction import Disc, Ellipse, Polygon, Segment
-from painleve.mechanics.parse import exact_number
 from painleve.mechanics.scene import Scene
-from painleve.mechanics.signs import Sign, Signed, exact_sign
 from painleve.mechanics.state import Number, State, resolve_parameters
 
 __all__ = ["ContactProblem", "Numbers", "make_problem", "problem_at"]

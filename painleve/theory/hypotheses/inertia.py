@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import sympy as sp
 
-from painleve.mechanics.hypotheses.claims import Claim, Kind, Status, decide
-from painleve.mechanics.hypotheses.findings import Finding, Hypothesis, conclude, join, report
-from painleve.mechanics.hypotheses.region import Region
-from painleve.mechanics.hypotheses.smoothness import Level, check_smoothness
+from painleve.theory.hypotheses.claims import Claim, ClaimKind, ClaimStatus, decide
+from painleve.theory.hypotheses.findings import Finding, Hypothesis, conclude, join, report
+from painleve.theory.hypotheses.region import Region
+from painleve.theory.hypotheses.smoothness import Level, check_smoothness
 
 __all__ = ["check_inertia"]
 
@@ -26,11 +26,11 @@ def _definite(region: Region) -> list[Finding]:
     for coordinates, minor in _leading_minors(region.state.scene.inertia):
         names = ", ".join(str(region.state.scene.q[i]) for i in coordinates)
         what = f"the leading minor of M in {names}"
-        decision = decide(region, Claim(kind=Kind.POSITIVE, expressions=(minor,)))
+        decision = decide(region, Claim(kind=ClaimKind.POSITIVE, expressions=(minor,)))
         decisions.append(decision)
         findings.append(report(decision, holds=f"{what} is positive", fails=f"{what} is not positive"))
-    if any(d.status is not Status.PROVED for d in decisions):
-        return [f for f in findings if f.status is not Status.PROVED]
+    if any(d.status is not ClaimStatus.PROVED for d in decisions):
+        return [f for f in findings if f.status is not ClaimStatus.PROVED]
     return [report(join(decisions), holds="the leading minors of M are positive", fails="")]
 
 

@@ -9,20 +9,20 @@ import sympy as sp
 from flint import arb
 
 from painleve.errors import InputError
-from painleve.mechanics.balls import ball
+from painleve.exact.balls import ball
+from painleve.exact.parse import exact_number, parse_expression
+from painleve.exact.signs import Sign, exact_sign
+from painleve.exact.zeros import Zero, ZeroStatus, find_zeros
 from painleve.mechanics.derive import derive
 from painleve.mechanics.friction import Disc, Polygon, Segment
-from painleve.mechanics.neighbourhood import smooth_indicator
-from painleve.mechanics.parse import exact_number, parse_expression
 from painleve.mechanics.scene import Scene, StateKey
-from painleve.mechanics.signs import Sign, exact_sign
 from painleve.mechanics.state import Number, State, make_curve, make_state
-from painleve.mechanics.zeros import Found, Zero, find_zeros
+from painleve.theory.neighbourhood import smooth_indicator
 
-__all__ = ["Curve"]
+__all__ = ["StateCurve"]
 
 
-class Curve:
+class StateCurve:
     """The curve's substitution, and the functions of its key whose zeros are sought."""
 
     def __init__(
@@ -121,7 +121,7 @@ class Curve:
         sizes = [self.on(x) for x in (self.scene.inertia.det(method="berkowitz"), self.derivation.gradient_squared)]
         if zero.place is not None:
             return any(exact_sign(x.xreplace({self.variable: zero.place})).sign is Sign.ZERO for x in sizes)
-        if zero.status is Found.UNDECIDED and not all(self.value(x, zero.enclosure) > 0 for x in sizes):
+        if zero.status is ZeroStatus.UNDECIDED and not all(self.value(x, zero.enclosure) > 0 for x in sizes):
             self._leave([zero.enclosure])
             return True
         return False

@@ -6,17 +6,17 @@ from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
 
-from painleve.asymptotics.limit_set import limit_set
 from painleve.errors import InputError
-from painleve.mechanics.hypotheses.claims import Status
-from painleve.mechanics.hypotheses.constraint import check_constraint
-from painleve.mechanics.hypotheses.findings import Hypothesis
-from painleve.mechanics.hypotheses.inertia import check_inertia
-from painleve.mechanics.hypotheses.region import Region
-from painleve.mechanics.hypotheses.section import check_one_dimensional, check_section, check_strictly_convex
-from painleve.mechanics.parse import exact_number
-from painleve.mechanics.signs import Sign
+from painleve.exact.parse import exact_number
+from painleve.exact.signs import Sign
 from painleve.mechanics.state import Number, State
+from painleve.theory.hypotheses.claims import ClaimStatus
+from painleve.theory.hypotheses.constraint import check_constraint
+from painleve.theory.hypotheses.findings import Hypothesis
+from painleve.theory.hypotheses.inertia import check_inertia
+from painleve.theory.hypotheses.region import Region
+from painleve.theory.hypotheses.section import check_one_dimensional, check_section, check_strictly_convex
+from painleve.theory.limit_set import limit_set
 
 __all__ = ["DEFAULT_RADIUS", "Applicability", "HypothesesCheck", "check_hypotheses"]
 
@@ -35,9 +35,9 @@ class Applicability(Enum):
 
 
 _VERDICTS = {
-    Status.REFUTED: Applicability.REFUTED,
-    Status.UNDECIDED: Applicability.UNDECIDED,
-    Status.SUPPORTED: Applicability.SUPPORTED,
+    ClaimStatus.REFUTED: Applicability.REFUTED,
+    ClaimStatus.UNDECIDED: Applicability.UNDECIDED,
+    ClaimStatus.SUPPORTED: Applicability.SUPPORTED,
 }
 
 
@@ -106,11 +106,11 @@ def _apply(state: State, hypotheses: tuple[Hypothesis, ...]) -> tuple[Applicabil
     return Applicability.APPLIES, f"{because}, and {', '.join(needed)} hold"
 
 
-def _needed(hypotheses: tuple[Hypothesis, ...]) -> dict[str, Status]:
+def _needed(hypotheses: tuple[Hypothesis, ...]) -> dict[str, ClaimStatus]:
     """The theorem asks for (H4) or (H'4): the one that is settled, else both together."""
     *others, line, convex = hypotheses
-    for status in (Status.PROVED, Status.SUPPORTED, Status.UNDECIDED):
+    for status in (ClaimStatus.PROVED, ClaimStatus.SUPPORTED, ClaimStatus.UNDECIDED):
         either = [h.name for h in (line, convex) if h.status is status]
         if either:
             return {h.name: h.status for h in others} | {either[0]: status}
-    return {h.name: h.status for h in others} | {f"{line.name} and {convex.name}": Status.REFUTED}
+    return {h.name: h.status for h in others} | {f"{line.name} and {convex.name}": ClaimStatus.REFUTED}

@@ -21,7 +21,7 @@ from types import MappingProxyType
 import sympy
 from flint import arb
 
-from painleve.mechanics.balls import ball, make_ball_function
+from painleve.exact.balls import ball, make_ball_function
 
 __all__ = ["Sign", "Signed", "exact_sign"]
 

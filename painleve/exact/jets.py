@@ -15,7 +15,7 @@ import flint
 import sympy as sp
 
 from painleve.errors import InputError
-from painleve.mechanics.balls import ball
+from painleve.exact.balls import ball
 
 __all__ = ["Jet", "jets", "monomials"]
 

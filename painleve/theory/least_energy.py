@@ -1,4 +1,4 @@
-"""The jump of law (7) at a tangential contact: the impulse of least kinetic energy, exactly (the project's notes, 3).
+"""The jump of law (7) at a tangential contact: the impulse of least kinetic energy, exactly (docs/theory.md, 3).
 
 With g = 0 and <u-, n> = 0 an impulse (r_n, r_t) keeps the velocity tangential where a r_n + b.r_t = 0. In the plane
 and where gamma = 0 these are the multiples of one ray rho = (1, s), the energy least at r_n = max(0, -v_t.s/s.Q s).
@@ -13,11 +13,11 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from painleve.asymptotics.wedge import wedge
+from painleve.exact.signs import Sign, Signed, exact_sign
 from painleve.mechanics.derive import Derivation, derive
 from painleve.mechanics.friction import Polygon, Segment
-from painleve.mechanics.signs import Sign, Signed, exact_sign
 from painleve.mechanics.state import State
+from painleve.theory.wedge import wedge
 
 __all__ = ["LeastEnergy", "inverse_of_two", "least_edge", "least_energy", "sticking_impulse"]
 

@@ -1,7 +1,7 @@
 """The sign of gamma on touching or penetrating neighbours of a state with gamma = 0, decided exactly.
 
-Theorem 1 asks whether gamma <= 0 on some ball without Int K (isolated) or gamma > 0 arbitrarily near (approached); the
-project's notes, section 5, give the argument. What is differentiated is p = |grad g|^2 det(M) gamma, a polynomial where
+Theorem 1 asks whether gamma <= 0 on some ball without Int K (isolated) or gamma > 0 arbitrarily near (approached);
+docs/theory.md, section 5, gives the argument. What is differentiated is p = |grad g|^2 det(M) gamma, a polynomial where
 gamma is a fraction: a positive factor changes no sign, at a zero it scales the gradient, and it scales the second-order
 form wherever that form is asked. p is smooth there: a > 0 and p = 0 make b nonzero and the minimising end unique.
 """
@@ -15,10 +15,10 @@ from itertools import combinations
 
 import sympy as sp
 
+from painleve.exact.signs import Sign, Signed, exact_sign
 from painleve.mechanics.derive import derive
 from painleve.mechanics.friction import Polygon, Segment, norm
 from painleve.mechanics.scene import Scene
-from painleve.mechanics.signs import Sign, Signed, exact_sign
 from painleve.mechanics.state import State
 
 __all__ = ["Neighbourhood", "Neighbours", "neighbours", "smooth_indicator"]

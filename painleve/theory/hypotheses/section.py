@@ -13,11 +13,11 @@ import sympy as sp
 
 from painleve.mechanics.derive import derive
 from painleve.mechanics.friction import Disc, Polygon, Section, Segment
-from painleve.mechanics.hypotheses.claims import Claim, Kind, Status, decide
-from painleve.mechanics.hypotheses.constraint import gradient_claim
-from painleve.mechanics.hypotheses.findings import Finding, Hypothesis, conclude, report
-from painleve.mechanics.hypotheses.region import Place, Region
-from painleve.mechanics.hypotheses.smoothness import Level, check_smoothness
+from painleve.theory.hypotheses.claims import Claim, ClaimKind, ClaimStatus, decide
+from painleve.theory.hypotheses.constraint import gradient_claim
+from painleve.theory.hypotheses.findings import Finding, Hypothesis, conclude, report
+from painleve.theory.hypotheses.region import Place, Region
+from painleve.theory.hypotheses.smoothness import Level, check_smoothness
 
 __all__ = ["check_one_dimensional", "check_section", "check_strictly_convex"]
 
@@ -28,7 +28,7 @@ def check_section(region: Region) -> Hypothesis:
     friction = region.state.scene.friction
     if friction is None:
         sentence = "without friction D_1 = {0}"
-        return conclude("H3", asks, [Finding(status=Status.PROVED, sentence=sentence), _defined(region)])
+        return conclude("H3", asks, [Finding(status=ClaimStatus.PROVED, sentence=sentence), _defined(region)])
     findings = [_sound(region, friction), *_continuous(region, friction), _normal_apart(region, friction)]
     return conclude("H3", asks, findings)
 
@@ -40,7 +40,7 @@ def check_one_dimensional(region: Region) -> Hypothesis:
     if friction is None:
         here = region.place(region.state.q)
         sentence = "without friction D_1 = {0}, whose span has dimension 0"
-        return conclude("H4", asks, [Finding(status=Status.REFUTED, sentence=sentence, place=here)])
+        return conclude("H4", asks, [Finding(status=ClaimStatus.REFUTED, sentence=sentence, place=here)])
     if not _is_flat(region, friction):
         return conclude("H4", asks, [_plane(region, friction, "Span D_1 has dimension 2")])
     return conclude("H4", asks, list(_line(region, friction)))
@@ -52,20 +52,20 @@ def check_strictly_convex(region: Region) -> Hypothesis:
     friction = region.state.scene.friction
     if friction is None:
         sentence = "D_1 = {0} has no two points between which to fail; without friction gamma > 0 everywhere"
-        return conclude("H'4", asks, [Finding(status=Status.PROVED, sentence=sentence)])
+        return conclude("H'4", asks, [Finding(status=ClaimStatus.PROVED, sentence=sentence)])
     if isinstance(friction, Polygon) and not _is_flat(region, friction):
         return conclude("H'4", asks, [_plane(region, friction, "D_1 is a polygon, with edges in its boundary,")])
     sentence = (
         f"D_1 is the linear image of {_name(friction)}: strictly convex relative to its span, "
         "where it shrinks to {0} too"
     )
-    return conclude("H'4", asks, [Finding(status=Status.PROVED, sentence=sentence)])
+    return conclude("H'4", asks, [Finding(status=ClaimStatus.PROVED, sentence=sentence)])
 
 
 def _sound(region: Region, friction: Section) -> Finding:
     """B is what it is said to be, and holds 0."""
     conditions = tuple(dict.fromkeys(c.expression for c in friction.conditions))
-    decision = decide(region, Claim(kind=Kind.NONNEGATIVE, expressions=conditions))
+    decision = decide(region, Claim(kind=ClaimKind.NONNEGATIVE, expressions=conditions))
     if isinstance(friction, Polygon):
         around = "the vertices of the friction polygon go around 0 with nothing but left turns"
         return report(decision, holds=around, fails="the friction polygon is not convex, or does not hold 0,")
@@ -83,8 +83,8 @@ def _defined(region: Region) -> Finding:
     """n and D_1 are divided by |grad g|."""
     decision = decide(region, gradient_claim(region))
     found = report(decision, holds="grad g does not vanish on the ball", fails="n is not defined")
-    if found.status is Status.REFUTED:  # the hypotheses ask nothing of D_1 there, and nothing gives it
-        return Finding(status=Status.UNDECIDED, sentence=f"{found.sentence}, so D_1 is not", place=found.place)
+    if found.status is ClaimStatus.REFUTED:  # the hypotheses ask nothing of D_1 there, and nothing gives it
+        return Finding(status=ClaimStatus.UNDECIDED, sentence=f"{found.sentence}, so D_1 is not", place=found.place)
     return found
 
 
@@ -92,19 +92,19 @@ def _normal_apart(region: Region, friction: Section) -> Finding:
     """grad g is not in Span D_1 wherever [grad g, H] has full rank."""
     w, H = derive(region.state.scene).normal, region.state.scene.tangents
     minors = _minors(sp.Matrix.hstack(sp.Matrix(w), sp.Matrix(H)), 1 + friction.dimension)
-    decision = decide(region, Claim(kind=Kind.NONZERO, expressions=minors))
+    decision = decide(region, Claim(kind=ClaimKind.NONZERO, expressions=minors))
     found = report(decision, holds="grad g is not in Span D_1", fails="grad g is in Span D_1")
-    if found.status is not Status.REFUTED or found.place is None or _fills(region, friction, found.place):
+    if found.status is not ClaimStatus.REFUTED or found.place is None or _fills(region, friction, found.place):
         return found
     sentence = f"grad g and the columns of H are dependent at {found.place}, but D_1 may not span those columns there"
-    return Finding(status=Status.UNDECIDED, sentence=sentence, place=found.place)
+    return Finding(status=ClaimStatus.UNDECIDED, sentence=sentence, place=found.place)
 
 
 def _fills(region: Region, friction: Section, place: Place) -> bool:
     """Proved: D_1 spans the columns of H, which are independent, and grad g is not zero."""
     ranks = (*_full_rank(region, friction), gradient_claim(region).expressions)
     return all(
-        Claim(kind=Kind.NONZERO, expressions=minors).holds([region.enclose(e, place) for e in minors])
+        Claim(kind=ClaimKind.NONZERO, expressions=minors).holds([region.enclose(e, place) for e in minors])
         for minors in ranks
     )
 
@@ -159,15 +159,17 @@ def _line(region: Region, friction: Section) -> Iterator[Finding]:
 
 def _not_zero(region: Region, matrix: sp.MatrixBase, holds: str, fails: str) -> Finding:
     entries = tuple(dict.fromkeys(e for e in matrix if e != 0)) or (sp.Integer(0),)
-    return report(decide(region, Claim(kind=Kind.NONZERO, expressions=entries)), holds=holds, fails=fails)
+    return report(decide(region, Claim(kind=ClaimKind.NONZERO, expressions=entries)), holds=holds, fails=fails)
 
 
 def _plane(region: Region, friction: Section, sentence: str) -> Finding:
     """Refuted at q itself, if D_1 spans a plane there."""
     here = region.place(region.state.q)
     ranks = _full_rank(region, friction)
-    if all(Claim(kind=Kind.NONZERO, expressions=minors).holds_exactly(region, region.state.q) for minors in ranks):
-        return Finding(status=Status.REFUTED, sentence=f"{sentence} at {here}", place=here)
+    if all(Claim(kind=ClaimKind.NONZERO, expressions=minors).holds_exactly(region, region.state.q) for minors in ranks):
+        return Finding(status=ClaimStatus.REFUTED, sentence=f"{sentence} at {here}", place=here)
     return Finding(
-        status=Status.UNDECIDED, place=here, sentence=f"D_1 does not span a plane at {here}; it may do so beside it"
+        status=ClaimStatus.UNDECIDED,
+        place=here,
+        sentence=f"D_1 does not span a plane at {here}; it may do so beside it",
     )

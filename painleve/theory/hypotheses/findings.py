@@ -6,19 +6,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import ROUND_DOWN, Context
 
-from painleve.mechanics.hypotheses.claims import Decision, Status
-from painleve.mechanics.hypotheses.region import Place
+from painleve.theory.hypotheses.claims import ClaimStatus, Decision
+from painleve.theory.hypotheses.region import Place
 
 __all__ = ["Finding", "Hypothesis", "conclude", "join", "report"]
 
-_WORST_FIRST = (Status.REFUTED, Status.UNDECIDED, Status.SUPPORTED, Status.PROVED)
+_WORST_FIRST = (ClaimStatus.REFUTED, ClaimStatus.UNDECIDED, ClaimStatus.SUPPORTED, ClaimStatus.PROVED)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
     """One part of a hypothesis; `place` is the point that refutes it, or near which it is undecided."""
 
-    status: Status
+    status: ClaimStatus
     sentence: str
     place: Place | None = None
 
@@ -29,7 +29,7 @@ class Hypothesis:
 
     name: str
     asks: str
-    status: Status
+    status: ClaimStatus
     sentence: str
     place: Place | None
 
@@ -51,7 +51,7 @@ def conclude(name: str, asks: str, findings: list[Finding]) -> Hypothesis:
 def join(decisions: Sequence[Decision]) -> Decision:
     """Several proved claims as one: the least bound, the boxes of all."""
     return Decision(
-        status=Status.PROVED,
+        status=ClaimStatus.PROVED,
         place=None,
         boxes=sum(d.boxes for d in decisions),
         points=sum(d.points for d in decisions),
@@ -62,13 +62,13 @@ def join(decisions: Sequence[Decision]) -> Decision:
 def report(decision: Decision, *, holds: str, fails: str) -> Finding:
     """A decision in words: `holds` and `fails` are the two ways in which it can go."""
     place = decision.place
-    if decision.status is Status.PROVED:
+    if decision.status is ClaimStatus.PROVED:
         bound = f" (at least {_rounded_down(decision.bound)}, on {_count(decision.boxes, 'box', 'boxes')})"
         return Finding(status=decision.status, sentence=holds + (bound if 0.0 < decision.bound < float("inf") else ""))
-    if decision.status is Status.REFUTED:
+    if decision.status is ClaimStatus.REFUTED:
         return Finding(status=decision.status, sentence=f"{fails} at {place}", place=place)
     tried = f"{_count(decision.points, 'point', 'points')} and {_count(decision.boxes, 'box', 'boxes')} tried"
-    if decision.status is Status.SUPPORTED:
+    if decision.status is ClaimStatus.SUPPORTED:
         sentence = f"{holds} at every point tried, which proves nothing between them ({tried})"
         return Finding(status=decision.status, sentence=sentence)
     near = "" if place is None else f", near {place}"

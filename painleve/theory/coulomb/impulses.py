@@ -1,4 +1,4 @@
-"""All impulses that solve Coulomb's one-step problem with maximal dissipation (the project's notes, section 2).
+"""All impulses that solve Coulomb's one-step problem with maximal dissipation (docs/theory.md, section 2).
 
 r = lambda (1, s), s in the section B, with u = (v_n, v_t) + G r: u_n >= 0, lambda u_n = 0 and, where lambda > 0,
 s.u_t <= s'.u_t for all s' in B. Where s is interior to B this says u_t = 0; elsewhere
@@ -21,14 +21,14 @@ from typing import Literal, TypeAlias
 import sympy as sp
 from flint import arb, ctx
 
-from painleve.asymptotics.coulomb.problem import ContactProblem, recognised
-from painleve.asymptotics.coulomb.slip_roots import Undecided, find_slips
-from painleve.mechanics.balls import ball
-from painleve.mechanics.signs import Sign, exact_sign
+from painleve.exact.balls import ball
+from painleve.exact.signs import Sign, exact_sign
+from painleve.theory.coulomb.problem import ContactProblem, recognised
+from painleve.theory.coulomb.slip_roots import Undecided, find_slips
 
-__all__ = ["BITS", "Exact", "Impulse", "Kind", "find_impulses"]
+__all__ = ["BITS", "Exact", "Impulse", "ImpulseKind", "find_impulses"]
 
-Kind = Literal["open", "stick", "slip", "frictionless"]
+ImpulseKind = Literal["open", "stick", "slip", "frictionless"]
 Exact: TypeAlias = sp.Expr | arb
 
 BITS = 256
@@ -42,7 +42,7 @@ class Impulse:
     multiplicity and an `end`: it is the open segment from `values` to `end`.
     """
 
-    kind: Kind
+    kind: ImpulseKind
     values: tuple[Exact, ...]
     multiplicity: int | None = 1
     end: tuple[Exact, ...] | None = None

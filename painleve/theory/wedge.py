@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import sympy as sp
 
+from painleve.exact.signs import Sign, exact_sign
 from painleve.mechanics.derive import Derivation
 from painleve.mechanics.friction import Disc, Ellipse, Polygon
-from painleve.mechanics.signs import Sign, exact_sign
 from painleve.mechanics.state import State
 
 __all__ = ["wedge"]

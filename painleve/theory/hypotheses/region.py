@@ -15,7 +15,7 @@ import flint
 import sympy as sp
 from flint import arb, fmpq
 
-from painleve.mechanics.balls import ball, make_ball_function
+from painleve.exact.balls import ball, make_ball_function
 from painleve.mechanics.state import State
 
 __all__ = ["Box", "Evaluator", "Offset", "Place", "Region", "as_ball"]

@@ -10,8 +10,8 @@ import flint
 import sympy as sp
 from flint import arb
 
-from painleve.mechanics.hypotheses.region import BITS, Box, Region, as_ball
-from painleve.mechanics.signs import Sign, exact_sign
+from painleve.exact.signs import Sign, exact_sign
+from painleve.theory.hypotheses.region import BITS, Box, Region, as_ball
 
 __all__ = ["simplest_fraction", "simplest_points"]
 

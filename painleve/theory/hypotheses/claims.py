@@ -17,11 +17,11 @@ from fractions import Fraction
 import sympy as sp
 from flint import arb
 
-from painleve.mechanics.hypotheses.region import Box, Evaluator, Offset, Place, Region
-from painleve.mechanics.hypotheses.simplest import simplest_points
-from painleve.mechanics.signs import Sign, exact_sign
+from painleve.exact.signs import Sign, exact_sign
+from painleve.theory.hypotheses.region import Box, Evaluator, Offset, Place, Region
+from painleve.theory.hypotheses.simplest import simplest_points
 
-__all__ = ["Claim", "Decision", "Kind", "Status", "decide"]
+__all__ = ["Claim", "ClaimKind", "ClaimStatus", "Decision", "decide"]
 
 MAX_BOXES = 1500
 MAX_OPEN_BOXES = 6  # that are searched for an exact zero
@@ -36,7 +36,7 @@ _JUMPS = (sp.sign, sp.atan2, sp.Heaviside, sp.floor, sp.ceiling, sp.Piecewise)
 _FINITE = (sp.sin, sp.cos, sp.exp, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.Abs, sp.Min, sp.Max)
 
 
-class Status(Enum):
+class ClaimStatus(Enum):
     """How far a claim, or a hypothesis, is settled on the ball."""
 
     PROVED = "proved"
@@ -45,7 +45,7 @@ class Status(Enum):
     UNDECIDED = "undecided"
 
 
-class Kind(Enum):
+class ClaimKind(Enum):
     """What is claimed of expressions at every point of the ball."""
 
     POSITIVE = "> 0"
@@ -60,28 +60,28 @@ class Claim:
     With `where`, only at the points at which that expression vanishes.
     """
 
-    kind: Kind
+    kind: ClaimKind
     expressions: tuple[sp.Expr, ...]
     where: sp.Expr | None = None
 
     def holds(self, values: Sequence[arb]) -> bool:
         """Proved by enclosures of the values."""
-        if self.kind is Kind.NONZERO:
+        if self.kind is ClaimKind.NONZERO:
             return any(_is_nonzero(value) for value in values)
-        return all(value > 0 if self.kind is Kind.POSITIVE else value >= 0 for value in values)
+        return all(value > 0 if self.kind is ClaimKind.POSITIVE else value >= 0 for value in values)
 
     def fails(self, values: Sequence[arb]) -> bool:
         """Refuted by enclosures of the values at one point."""
-        if self.kind is Kind.NONZERO:
+        if self.kind is ClaimKind.NONZERO:
             return all(value.is_zero() for value in values)
-        return any(value <= 0 if self.kind is Kind.POSITIVE else value < 0 for value in values)
+        return any(value <= 0 if self.kind is ClaimKind.POSITIVE else value < 0 for value in values)
 
     def holds_exactly(self, region: Region, q: tuple[sp.Expr, ...]) -> bool:
         """Proved at one configuration, by exact signs."""
         signs = (exact_sign(region.value(e, q)).sign for e in self.expressions)
-        if self.kind is Kind.NONZERO:
+        if self.kind is ClaimKind.NONZERO:
             return any(sign in (Sign.POSITIVE, Sign.NEGATIVE) for sign in signs)
-        good = (Sign.POSITIVE,) if self.kind is Kind.POSITIVE else (Sign.POSITIVE, Sign.ZERO)
+        good = (Sign.POSITIVE,) if self.kind is ClaimKind.POSITIVE else (Sign.POSITIVE, Sign.ZERO)
         return all(sign in good for sign in signs)
 
     def fails_exactly(self, region: Region, q: tuple[sp.Expr, ...]) -> bool:
@@ -89,14 +89,14 @@ class Claim:
         if self.where is not None and exact_sign(region.value(self.where, q)).sign is not Sign.ZERO:
             return False
         signs = (exact_sign(region.value(e, q)).sign for e in self.expressions)
-        if self.kind is Kind.NONZERO:
+        if self.kind is ClaimKind.NONZERO:
             return all(sign is Sign.ZERO for sign in signs)
-        bad = (Sign.NEGATIVE, Sign.ZERO) if self.kind is Kind.POSITIVE else (Sign.NEGATIVE,)
+        bad = (Sign.NEGATIVE, Sign.ZERO) if self.kind is ClaimKind.POSITIVE else (Sign.NEGATIVE,)
         return any(sign in bad for sign in signs)
 
     def margin(self, values: Sequence[arb]) -> float:
         """A lower bound on the least value, or on the largest modulus."""
-        if self.kind is Kind.NONZERO:
+        if self.kind is ClaimKind.NONZERO:
             return max((float(v.abs_lower()) for v in values if v.is_finite()), default=0.0)
         return min(float(v.lower()) for v in values)
 
@@ -105,7 +105,7 @@ class Claim:
 class Decision:
     """What became of a claim: `place` refutes it, or is where it stayed open; `bound` is its margin where proved."""
 
-    status: Status
+    status: ClaimStatus
     place: Place | None
     boxes: int
     points: int
@@ -115,9 +115,9 @@ class Decision:
 def decide(region: Region, claim: Claim, *, max_boxes: int = MAX_BOXES) -> Decision:
     """Decide the claim on the ball within `max_boxes` boxes."""
     try:
-        search = _Search(region, claim)
+        search = _ClaimSearch(region, claim)
     except (TypeError, ValueError):  # a function that has no ball arithmetic
-        return Decision(status=Status.UNDECIDED, place=None, boxes=0, points=0, bound=0.0)
+        return Decision(status=ClaimStatus.UNDECIDED, place=None, boxes=0, points=0, bound=0.0)
     search.run(max_boxes, until_signs_differ=True)
     search.refuted = search.refuted or _zero_between(search)
     search.run(max_boxes)
@@ -131,7 +131,7 @@ def _is_nonzero(value: arb) -> bool:
 
 
 @dataclass
-class _Search:
+class _ClaimSearch:
     region: Region
     claim: Claim
     open: deque[Box] = field(default_factory=deque)
@@ -188,7 +188,7 @@ class _Search:
         elif not self.claim.holds(values) and self.unclear is None:
             place = self.place(offset)
             self.unclear = None if self.claim.holds_exactly(self.region, place.q) else place
-        if self.claim.kind is Kind.NONZERO and len(values) == 1 and _is_nonzero(values[0]):
+        if self.claim.kind is ClaimKind.NONZERO and len(values) == 1 and _is_nonzero(values[0]):
             self.ends.setdefault(Sign.POSITIVE if values[0] > 0 else Sign.NEGATIVE, offset)
 
     def place(self, offset: Offset) -> Place:
@@ -200,16 +200,16 @@ class _Search:
         return [*self.left, *reversed(self.open)]
 
     def decision(self) -> Decision:
-        status, place = Status.PROVED, None
+        status, place = ClaimStatus.PROVED, None
         if self.refuted is not None:
-            status, place = Status.REFUTED, self.refuted
+            status, place = ClaimStatus.REFUTED, self.refuted
         elif self.remaining:
             supported = self.points > 0 and self.unclear is None
-            status, place = (Status.SUPPORTED if supported else Status.UNDECIDED), self.unclear
+            status, place = (ClaimStatus.SUPPORTED if supported else ClaimStatus.UNDECIDED), self.unclear
         return Decision(status=status, place=place, boxes=self.boxes, points=self.points, bound=self.bound)
 
 
-def _zero_between(search: _Search) -> Place | None:
+def _zero_between(search: _ClaimSearch) -> Place | None:
     """A zero on the segment between two points at which a continuous function has opposite signs."""
     if len(search.ends) < 2 or search.claim.expressions[0].has(*_JUMPS):
         return None
@@ -231,7 +231,7 @@ def _zero_between(search: _Search) -> Place | None:
     return search.region.place(q, _half_diagonal(hull))
 
 
-def _split(search: _Search, one: Offset, other: Offset) -> tuple[Sign, Offset]:
+def _split(search: _ClaimSearch, one: Offset, other: Offset) -> tuple[Sign, Offset]:
     """A point between two, and the sign there; beside the middle where that is a zero, or too near to one."""
     for share in (Fraction(1, 2), Fraction(1, 3)):
         between = tuple(x + share * (y - x) for x, y in zip(one, other, strict=True))
@@ -253,7 +253,7 @@ def _half_diagonal(box: Box) -> float:
     return float(sum(box.sides, Fraction(0))) * 0.5000001
 
 
-def _exact_counterexample(search: _Search) -> Place | None:
+def _exact_counterexample(search: _ClaimSearch) -> Place | None:
     """An exact point of the boxes that stayed open at which the claim fails."""
     for q in _candidates(search):
         if search.claim.fails_exactly(search.region, q):
@@ -261,7 +261,7 @@ def _exact_counterexample(search: _Search) -> Place | None:
     return None
 
 
-def _candidates(search: _Search) -> Iterator[tuple[sp.Expr, ...]]:
+def _candidates(search: _ClaimSearch) -> Iterator[tuple[sp.Expr, ...]]:
     boxes = search.remaining
     step = -(-len(boxes) // MAX_OPEN_BOXES)
     for box in boxes[::step]:
@@ -270,7 +270,7 @@ def _candidates(search: _Search) -> Iterator[tuple[sp.Expr, ...]]:
 
 def _vanishing_factor(region: Region, claim: Claim) -> Place | None:
     """A zero of one factor: a square only touches zero, what is squared passes through it."""
-    if claim.kind is Kind.NONNEGATIVE or len(claim.expressions) > 1 or claim.where is not None:
+    if claim.kind is ClaimKind.NONNEGATIVE or len(claim.expressions) > 1 or claim.where is not None:
         return None
     expression = claim.expressions[0]
     if expression.count_ops() > MAX_FACTORED or not _is_finite_everywhere(region, expression):
@@ -278,8 +278,8 @@ def _vanishing_factor(region: Region, claim: Claim) -> Place | None:
     for base in _bases(expression):
         if base == expression or not region.used([base]):
             continue
-        found = decide(region, Claim(kind=Kind.NONZERO, expressions=(base,)), max_boxes=MAX_BOXES // 4)
-        if found.status is Status.REFUTED:
+        found = decide(region, Claim(kind=ClaimKind.NONZERO, expressions=(base,)), max_boxes=MAX_BOXES // 4)
+        if found.status is ClaimStatus.REFUTED:
             return found.place
     return None
 

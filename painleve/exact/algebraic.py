@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import flint
 import sympy as sp
 
-from painleve.mechanics.balls import ball
+from painleve.exact.balls import ball
 
 __all__ = ["candidate_zeros"]
 
@@ -73,7 +73,7 @@ def _polynomial(function: sp.Expr, variable: sp.Symbol) -> tuple[bool, flint.fmp
         raise _NotAlgebraic
     written = sp.expand_trig(function) if function.has(sp.sin, sp.cos, sp.tan, sp.cot) else function
     angle = written.has(sp.sin(variable), sp.cos(variable), sp.tan(variable), sp.cot(variable))
-    reader = _Reader(variable, angle)
+    reader = _AlgebraicReader(variable, angle)
     numerator = reader.fraction(written)[0]
     for place, relation in reversed(reader.relations):
         if numerator.degrees()[place] > 0:
@@ -99,7 +99,7 @@ def _checked(polynomial: flint.fmpz_mpoly) -> flint.fmpz_mpoly:
     return polynomial
 
 
-class _Reader:
+class _AlgebraicReader:
     """The walk from an expression to a fraction of polynomials in T and in unknowns for cosine and roots."""
 
     def __init__(self, variable: sp.Symbol, angle: bool) -> None:

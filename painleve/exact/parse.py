@@ -23,7 +23,7 @@ import sympy
 from flint import arb, ctx, fmpq
 
 from painleve.errors import InputError, nearest
-from painleve.mechanics.balls import ball
+from painleve.exact.balls import ball
 
 __all__ = ["exact_number", "parse_expression", "parse_number"]
 
@@ -105,7 +105,7 @@ def parse_expression(text: str, symbols: Mapping[str, sympy.Expr] = _NO_SYMBOLS,
             raise _Refused(f"a formula is text, not {type(text).__name__}")
         words = _split(text)
         with ctx.workprec(_BITS):
-            return _Reader(words, symbols).read(_tree(words))
+            return _ExpressionReader(words, symbols).read(_tree(words))
     except _Refused as refused:
         raise InputError(f"{_one_line(where)}: {refused} (in {_shown(text)})") from None
 
@@ -227,7 +227,7 @@ def _tree(words: list[_Word]) -> ast.expr:
         raise _Refused("this is not a complete formula: check its parentheses and operators") from None
 
 
-class _Reader:
+class _ExpressionReader:
     """The walk from the syntax tree to sympy, over the words of one text and the declared symbols."""
 
     def __init__(self, words: list[_Word], symbols: Mapping[str, sympy.Expr]) -> None:

@@ -16,9 +16,9 @@ from typing import Any
 import sympy as sp
 from flint import acb_poly, arb, arb_poly, ctx, fmpq, fmpq_poly
 
-from painleve.mechanics.balls import ball
+from painleve.exact.balls import ball
 
-__all__ = ["Slip", "Undecided", "find_slips"]
+__all__ = ["SlipRoot", "Undecided", "find_slips"]
 
 PRECISIONS = (128, 512, 2048)
 TURNS = (fmpq(0), fmpq(1, 2), fmpq(2, 7), fmpq(-3, 5), fmpq(5, 11))
@@ -30,7 +30,7 @@ class Undecided(Exception):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Slip:
+class SlipRoot:
     """An impulse lambda (1, d) with u_t = -kappa d: balls that hold lambda, d, and the multiplicity of the root."""
 
     impulse: arb
@@ -48,7 +48,7 @@ class _Equation:
     turn: fmpq
 
 
-def find_slips(G: sp.MatrixBase, v: sp.MatrixBase, stick: Sequence[sp.Expr] | None) -> list[Slip]:
+def find_slips(G: sp.MatrixBase, v: sp.MatrixBase, stick: Sequence[sp.Expr] | None) -> list[SlipRoot]:
     """All slips at v_n != 0, upwards in t. `stick` is the sticking impulse where it lies exactly on the border of the
     cone: it is a root too, with u_t = 0, and no slip. Raises Undecided."""
     numbers = [G[0, 0], G[0, 1], G[0, 2], G[1, 1], G[1, 2], G[2, 2], *v]
@@ -69,7 +69,7 @@ def find_slips(G: sp.MatrixBase, v: sp.MatrixBase, stick: Sequence[sp.Expr] | No
     )
 
 
-def _of_rational(data: list[fmpq]) -> list[Slip]:
+def _of_rational(data: list[fmpq]) -> list[SlipRoot]:
     equations = (_equation(fmpq_poly, data, turn) for turn in TURNS)
     equation = next((e for e in equations if e.quartic.degree() == 4), None)
     if equation is None:
@@ -125,7 +125,7 @@ def _isolated(quartic: arb_poly, bits: int) -> list[arb] | None:
 
 def _slips(
     equation: _Equation, roots: list[tuple[arb, int]], nu: arb, stick: Sequence[arb] | None
-) -> list[Slip] | None:
+) -> list[SlipRoot] | None:
     """Those roots with lambda > 0 and kappa > 0; None where a sign is not decided.
 
     The sticking impulse on the border, if there is one, is exactly one of the roots, and left out.
@@ -138,7 +138,7 @@ def _slips(
             continue
         if lever > 0 and push > 0:
             impulse = nu * (1 + t * t) / equation.lever(t)
-            found.append(Slip(impulse=impulse, direction=direction, multiplicity=multiplicity))
+            found.append(SlipRoot(impulse=impulse, direction=direction, multiplicity=multiplicity))
         elif stick is not None and all((stick[1 + i] - direction[i] * stick[0]).contains(0) for i in (0, 1)):
             sticking += 1
         else:

@@ -2,8 +2,8 @@
 
 One state key varies, the rest is fixed. All zeros of gamma at the scene's friction and all extrema of the critical
 friction are found, with a proof that none was missed, or with the intervals in which that was not decided. At an exact
-zero the kind is decided by exact arithmetic (painleve.mechanics.neighbourhood); at one that is only enclosed by what
-holds on the whole enclosure (the project's notes, section 5):
+zero the kind is decided by exact arithmetic (painleve.theory.neighbourhood); at one that is only enclosed by what
+holds on the whole enclosure (docs/theory.md, section 5):
 - touching states on both sides of it have gamma > 0, or one side has: approached;
 - gamma is negative on both sides and depends on the coordinate that varies alone, or on two coordinates and falls into
   penetration: isolated.
@@ -18,15 +18,15 @@ from enum import Enum
 import sympy as sp
 from flint import arb
 
-from painleve.asymptotics.curve import Curve
-from painleve.asymptotics.limit_set import limit_set
 from painleve.errors import InputError
-from painleve.mechanics.balls import ball
-from painleve.mechanics.neighbourhood import Neighbourhood, Neighbours, neighbours, smooth_indicator
+from painleve.exact.balls import ball
+from painleve.exact.signs import Sign, exact_sign
+from painleve.exact.zeros import Zero, ZeroStatus
 from painleve.mechanics.scene import Scene
-from painleve.mechanics.signs import Sign, exact_sign
 from painleve.mechanics.state import Number
-from painleve.mechanics.zeros import Found, Zero
+from painleve.theory.curve import StateCurve
+from painleve.theory.limit_set import limit_set
+from painleve.theory.neighbourhood import Neighbourhood, Neighbours, neighbours, smooth_indicator
 
 __all__ = ["CriticalState", "CriticalStates", "Extremum", "critical_states"]
 
@@ -49,7 +49,7 @@ class CriticalState:
     the place has one; `extremum` is None for a zero of gamma at the scene's own friction.
     """
 
-    status: Found
+    status: ZeroStatus
     place: sp.Expr | None
     enclosure: arb
     friction: sp.Expr | None
@@ -82,7 +82,7 @@ class CriticalStates:
     @property
     def unresolved(self) -> tuple[CriticalState, ...]:
         """Intervals that may hold more than one zero, or none; without any, it is proved that none was missed."""
-        return tuple(x for x in (*self.zeros, *self.extrema) if x.status is Found.UNDECIDED)
+        return tuple(x for x in (*self.zeros, *self.extrema) if x.status is ZeroStatus.UNDECIDED)
 
     @property
     def least(self) -> CriticalState | None:
@@ -109,7 +109,7 @@ def critical_states(
     Without ends the key's own interval is taken, or a full turn for an angle. Raises InputError for an unknown key, an
     empty interval, a scene without friction, and where gamma does not change along the curve.
     """
-    curve = Curve(scene, along, name, dict(keys or {}), dict(parameters or {}), low, high)
+    curve = StateCurve(scene, along, name, dict(keys or {}), dict(parameters or {}), low, high)
     zeros = [_zero_of_gamma(curve, edge, zero) for edge in curve.edges for zero in curve.zeros(curve.indicator(edge))]
     numerator, note = curve.stationarity()
     extrema = [_extremum(curve, zero) for zero in (curve.zeros(numerator) if numerator is not None else ())]
@@ -130,14 +130,14 @@ def critical_states(
 # --- zeros of gamma --------------------------------------------------------------------------------------------------
 
 
-def _zero_of_gamma(curve: Curve, edge: int, zero: Zero) -> CriticalState | None:
+def _zero_of_gamma(curve: StateCurve, edge: int, zero: Zero) -> CriticalState | None:
     others = [curve.on(curve.indicator(e)) for e in curve.edges if e != edge]
     if any(curve.value(other, zero.enclosure) < 0 for other in others):
         return None  # gamma is attained on another edge, and negative
     kind, reason = Neighbourhood.UNDECIDED, zero.reason
     if zero.place is not None:
         kind, reason = _exact_kind(curve, zero.place, {})
-    if kind is Neighbourhood.UNDECIDED and zero.status is not Found.UNDECIDED and not curve.changing:
+    if kind is Neighbourhood.UNDECIDED and zero.status is not ZeroStatus.UNDECIDED and not curve.changing:
         if zero.multiplicity % 2 == 1:
             kind, reason = Neighbourhood.APPROACHED, "gamma changes its sign along touching states"
         elif zero.rise > 0:
@@ -154,7 +154,7 @@ def _zero_of_gamma(curve: Curve, edge: int, zero: Zero) -> CriticalState | None:
     )
 
 
-def _exact_kind(curve: Curve, place: sp.Expr, parameters: Mapping[str, Number]) -> tuple[Neighbourhood, str]:
+def _exact_kind(curve: StateCurve, place: sp.Expr, parameters: Mapping[str, Number]) -> tuple[Neighbourhood, str]:
     """By exact arithmetic; undecided where the numbers are too much for it, or the state is none."""
     try:
         limit = limit_set(curve.state(place, parameters))
@@ -166,7 +166,7 @@ def _exact_kind(curve: Curve, place: sp.Expr, parameters: Mapping[str, Number]) 
     return near.kind, near.reason
 
 
-def _exact_friction(curve: Curve, place: sp.Expr | None) -> sp.Expr | None:
+def _exact_friction(curve: StateCurve, place: sp.Expr | None) -> sp.Expr | None:
     """mu_c at an exact place, simplified where that is cheap; None where it is not defined."""
     formula = curve.derivation.critical_friction
     if place is None or formula is None:
@@ -185,15 +185,15 @@ def _exact_friction(curve: Curve, place: sp.Expr | None) -> sp.Expr | None:
 # --- extrema of mu_c -------------------------------------------------------------------------------------------------
 
 
-def _extremum(curve: Curve, zero: Zero) -> CriticalState | None:
+def _extremum(curve: StateCurve, zero: Zero) -> CriticalState | None:
     coupling = curve.value(curve.coupling(), zero.enclosure)
     if zero.place is not None and exact_sign(curve.coupling().xreplace({curve.variable: zero.place})).sign is Sign.ZERO:
         return None  # mu_c is infinite there
-    if zero.status is not Found.UNDECIDED and not (coupling > 0 or coupling < 0):
-        zero = replace(zero, status=Found.UNDECIDED, multiplicity=0, reason="mu_c may be infinite there")
+    if zero.status is not ZeroStatus.UNDECIDED and not (coupling > 0 or coupling < 0):
+        zero = replace(zero, status=ZeroStatus.UNDECIDED, multiplicity=0, reason="mu_c may be infinite there")
     sense = zero.rise * (1 if coupling > 0 else -1)
     extremum = None
-    if zero.status is not Found.UNDECIDED:
+    if zero.status is not ZeroStatus.UNDECIDED:
         extremum = (
             Extremum.INFLECTION if zero.multiplicity % 2 == 0 else (Extremum.MINIMUM if sense > 0 else Extremum.MAXIMUM)
         )
@@ -211,7 +211,7 @@ def _extremum(curve: Curve, zero: Zero) -> CriticalState | None:
     )
 
 
-def _coefficient(curve: Curve) -> str | None:
+def _coefficient(curve: StateCurve) -> str | None:
     """The parameter that is the coefficient of friction and nothing else, if there is one."""
     assert curve.scene.friction is not None
     value = curve.scene.friction.expressions[0]
@@ -220,12 +220,12 @@ def _coefficient(curve: Curve) -> str | None:
 
 
 def _kind_of_extremum(
-    curve: Curve, zero: Zero, extremum: Extremum | None, friction: sp.Expr | None, enclosure: arb
+    curve: StateCurve, zero: Zero, extremum: Extremum | None, friction: sp.Expr | None, enclosure: arb
 ) -> tuple[Neighbourhood, str]:
     name = _coefficient(curve)
     if name is None:
         return Neighbourhood.UNDECIDED, "friction is not a parameter, and cannot be set to mu_c"
-    if zero.status is Found.UNDECIDED:
+    if zero.status is ZeroStatus.UNDECIDED:
         return Neighbourhood.UNDECIDED, zero.reason
     kind, reason = Neighbourhood.UNDECIDED, "mu_c is stationary there"
     if zero.place is not None and friction is not None:
@@ -237,7 +237,9 @@ def _kind_of_extremum(
     return _kind_of_maximum(curve, zero.enclosure, curve.scene.parameter(name).symbol, enclosure, reason)
 
 
-def _kind_of_maximum(curve: Curve, place: arb, mu: sp.Symbol, friction: arb, reason: str) -> tuple[Neighbourhood, str]:
+def _kind_of_maximum(
+    curve: StateCurve, place: arb, mu: sp.Symbol, friction: arb, reason: str
+) -> tuple[Neighbourhood, str]:
     """gamma < 0 on both sides along the curve: what happens in the other directions, on the whole enclosure?"""
     scene = curve.scene
     fixed = curve.rules | {mu: mu}
@@ -257,6 +259,6 @@ def _kind_of_maximum(curve: Curve, place: arb, mu: sp.Symbol, friction: arb, rea
     return Neighbourhood.UNDECIDED, reason
 
 
-def _moves(curve: Curve, coordinate: sp.Symbol, place: arb) -> bool:
+def _moves(curve: StateCurve, coordinate: sp.Symbol, place: arb) -> bool:
     speed = curve.value(curve.on(coordinate).diff(curve.variable), place)
     return bool(speed > 0 or speed < 0)

@@ -1,4 +1,4 @@
-"""The limit set A(q, u-) at a tangential contact, exactly (paper, section 3; the project's notes, section 3)."""
+"""The limit set A(q, u-) at a tangential contact, exactly (paper, section 3; docs/theory.md, section 3)."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ import numpy as np
 import sympy as sp
 
 from painleve import sets
-from painleve.asymptotics.coulomb.limit import CoulombLimitSet, coulomb_limit_set
-from painleve.asymptotics.least_energy import least_edge, least_energy
 from painleve.errors import InputError
+from painleve.exact.signs import Sign, Signed, exact_sign
 from painleve.mechanics.derive import derive
-from painleve.mechanics.signs import Sign, Signed, exact_sign
 from painleve.mechanics.state import State
+from painleve.theory.coulomb.limit import CoulombLimitSet, coulomb_limit_set
+from painleve.theory.least_energy import least_edge, least_energy
 
 __all__ = ["Edge", "LimitSet", "limit_set"]
 
-Kind = Literal["point", "pair", "segment", "undecided"]
+LimitSetKind = Literal["point", "pair", "segment", "undecided"]
 Edge = int
 
 
@@ -34,7 +34,7 @@ class LimitSet:
     """
 
     state: State
-    kind: Kind
+    kind: LimitSetKind
     gamma: Signed
     gamma_value: float
     edge: Edge
@@ -71,12 +71,12 @@ class LimitSet:
         return np.array([self.state.number(x - y) for x, y in pairs])
 
     @property
-    def shape(self) -> sets.Points | sets.Segment:
+    def shape(self) -> sets.Points | sets.LineSegment:
         """A as a set of the plane of velocities, to rounding. Raises ValueError where A is undecided."""
         if self.kind == "undecided":
             raise ValueError(f"A is undecided: {self.reason}")
         if self.kind == "segment":
-            return sets.Segment(self.u_minus, self.u_plus)
+            return sets.LineSegment(self.u_minus, self.u_plus)
         ends = [self.u_minus] if self.kind == "point" else [self.u_minus, self.u_plus]
         return sets.Points(np.array(ends))
 
@@ -89,7 +89,7 @@ def limit_set(state: State, law: str = "projection") -> LimitSet | CoulombLimitS
     """The right velocities at a tangential contact, from exact signs; kind "undecided" where a sign is not decided.
 
     Of the law "projection", S of the paper's (7): A(q, u-). Of the law "coulomb", Coulomb's law with maximal
-    dissipation: the same for k <= 1 and in general another set for k = 2 (painleve.asymptotics.coulomb.limit). Raises
+    dissipation: the same for k <= 1 and in general another set for k = 2 (painleve.theory.coulomb.limit). Raises
     InputError for another law.
     """
     if law == "coulomb":
@@ -122,7 +122,7 @@ def _projected(state: State) -> LimitSet:
 
 def _limit(
     state: State,
-    kind: Kind,
+    kind: LimitSetKind,
     gamma: Signed,
     edge: Edge,
     impulse: tuple[sp.Expr, ...] | None,

@@ -16,11 +16,11 @@ import sympy as sp
 from flint import arb, ctx
 
 from painleve.errors import InputError
-from painleve.mechanics.algebraic import candidate_zeros
-from painleve.mechanics.balls import ball, make_ball_function
-from painleve.mechanics.signs import Sign, exact_sign
+from painleve.exact.algebraic import candidate_zeros
+from painleve.exact.balls import ball, make_ball_function
+from painleve.exact.signs import Sign, exact_sign
 
-__all__ = ["Found", "Zero", "Zeros", "find_zeros"]
+__all__ = ["Zero", "ZeroStatus", "Zeros", "find_zeros"]
 
 BITS = 128
 HIGHEST = 4  # multiplicity that is looked for
@@ -30,7 +30,7 @@ CUT = (491, 1000)  # where an interval is divided: off the middle, so that a zer
 SHARP = 2.0**-80  # width of an enclosure, in units of the whole
 
 
-class Found(Enum):
+class ZeroStatus(Enum):
     """EXACT: a number. ENCLOSED: exactly one simple zero in the ball. UNDECIDED: it may hold any number of zeros."""
 
     EXACT = "exact"
@@ -42,7 +42,7 @@ class Found(Enum):
 class Zero:
     """A zero or, if undecided, an interval, of multiplicity 0; `rise` is the sign of the derivative of that order."""
 
-    status: Found
+    status: ZeroStatus
     place: sp.Expr | None
     enclosure: arb
     multiplicity: int
@@ -72,10 +72,10 @@ class _Part:
 
 def find_zeros(function: sp.Expr, variable: sp.Symbol, low: sp.Expr, high: sp.Expr) -> Zeros:
     """The zeros of the function on [low, high]. Raises InputError for a function that cannot be differentiated."""
-    return _Search(function, variable, low, high).run()
+    return _ZeroSearch(function, variable, low, high).run()
 
 
-class _Search:
+class _ZeroSearch:
     def __init__(self, function: sp.Expr, variable: sp.Symbol, low: sp.Expr, high: sp.Expr) -> None:
         self.function, self.variable, self.ends = function, variable, (low, high)
         self.derivatives = [function]
@@ -171,7 +171,7 @@ class _Search:
         for sign, end in zip(signs, self.ends, strict=True):
             if sign is Sign.ZERO:
                 return Zero(
-                    status=Found.EXACT,
+                    status=ZeroStatus.EXACT,
                     place=end,
                     enclosure=ball(end, bits=BITS),
                     multiplicity=1,
@@ -182,7 +182,7 @@ class _Search:
             return None
         enclosure = self._sharpened(s)
         place = self._exact_in(enclosure, 1)
-        status = Found.ENCLOSED if place is None else Found.EXACT
+        status = ZeroStatus.ENCLOSED if place is None else ZeroStatus.EXACT
         enclosure = enclosure if place is None else ball(place, bits=BITS)
         return Zero(
             status=status,
@@ -225,7 +225,7 @@ class _Search:
             place = self._exact_in(s, multiplicity) if _nonzero(derivative) else None
             if place is not None:
                 return Zero(
-                    status=Found.EXACT,
+                    status=ZeroStatus.EXACT,
                     place=place,
                     enclosure=ball(place, bits=BITS),
                     multiplicity=multiplicity,
@@ -233,7 +233,7 @@ class _Search:
                     reason=f"a zero of multiplicity {multiplicity}, and the only one near",
                 )
         return Zero(
-            status=Found.UNDECIDED,
+            status=ZeroStatus.UNDECIDED,
             place=None,
             enclosure=s,
             multiplicity=0,

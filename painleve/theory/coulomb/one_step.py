@@ -10,12 +10,12 @@ import numpy as np
 import sympy as sp
 from flint import arb, ctx
 
-from painleve.asymptotics.coulomb.impulses import BITS, Exact, Impulse, Kind, find_impulses
-from painleve.asymptotics.coulomb.problem import ContactProblem, Numbers, make_problem, recognised
-from painleve.mechanics.balls import ball
+from painleve.exact.balls import ball
+from painleve.exact.signs import Sign, Signed
 from painleve.mechanics.scene import Scene
-from painleve.mechanics.signs import Sign, Signed
 from painleve.mechanics.state import Number
+from painleve.theory.coulomb.impulses import BITS, Exact, Impulse, ImpulseKind, find_impulses
+from painleve.theory.coulomb.problem import ContactProblem, Numbers, make_problem, recognised
 
 __all__ = ["CoulombSolution", "CoulombSolutions", "Enumeration", "coulomb_solutions", "enumerate_solutions"]
 
@@ -39,7 +39,7 @@ class CoulombSolution:
     precision, the rounded impulse misses u_n = 0 (or u_n >= 0) and the least s.u_t.
     """
 
-    kind: Kind
+    kind: ImpulseKind
     impulse: np.ndarray
     velocity: np.ndarray
     contact_velocity: np.ndarray
@@ -74,7 +74,7 @@ def coulomb_solutions(
     """Every solution of Coulomb's one-step problem with maximal dissipation at a configuration q and a velocity v.
 
     Wanted are r = lambda (1, s), lambda >= 0, s in the section of friction, and u = v + M^-1 W r with u_n >= 0,
-    lambda u_n = 0 and, where lambda > 0, the least s.u_t (the project's notes, section 2). Where g(q) < 0 there is no
+    lambda u_n = 0 and, where lambda > 0, the least s.u_t (docs/theory.md, section 2). Where g(q) < 0 there is no
     contact and u = v alone. q and v are sequences, or mappings from the coordinates and from `u_<coordinate>`; their
     numbers and the parameters are exact as in a state: text, fractions, sympy numbers, and a float means the decimal
     that it prints. The number of solutions and their multiplicities are decided, by exact arithmetic for rational

@@ -1,7 +1,7 @@
 """The right velocities that Coulomb's law with maximal dissipation admits at a tangential contact.
 
 Where g(q) = 0 and <u-, n> = 0 they are u+ = u- + M^-1 W r with r = lambda (1, s), lambda >= 0, s in the section, u+_n
-= 0 and, where lambda > 0, the least s.u+_t (paper, section 1; the project's notes, sections 2 and 3). u- itself is
+= 0 and, where lambda > 0, the least s.u+_t (paper, section 1; docs/theory.md, sections 2 and 3). u- itself is
 one.
 
 Which others there are. Write G = [[a, b], [b, C]] and let the section be the unit disc (or, for k = 1, [-1, 1]).
@@ -36,10 +36,10 @@ import numpy as np
 import sympy as sp
 
 from painleve import sets
-from painleve.asymptotics.coulomb.impulses import Impulse, Kind, find_impulses
-from painleve.asymptotics.coulomb.problem import ContactProblem, problem_at, recognised
-from painleve.mechanics.signs import Sign, Signed, exact_sign
+from painleve.exact.signs import Sign, Signed, exact_sign
 from painleve.mechanics.state import State
+from painleve.theory.coulomb.impulses import Impulse, ImpulseKind, find_impulses
+from painleve.theory.coulomb.problem import ContactProblem, problem_at, recognised
 
 __all__ = ["CoulombJump", "CoulombLimitSet", "coulomb_limit_set"]
 
@@ -52,7 +52,7 @@ class CoulombJump:
     family.
     """
 
-    kind: Kind
+    kind: ImpulseKind
     impulse: tuple[sp.Expr, ...]
     velocity: tuple[sp.Expr, ...]
     multiplicity: int | None
@@ -71,7 +71,7 @@ class CoulombLimitSet:
     reason: str
 
     @property
-    def parts(self) -> tuple[sets.Points | sets.Segment, ...]:
+    def parts(self) -> tuple[sets.Points | sets.LineSegment, ...]:
         """The closure of the set in the space of velocities, to rounding: its segments, then its other points.
 
         Raises ValueError where the set is undecided.
@@ -79,7 +79,7 @@ class CoulombLimitSet:
         if self.kind == "undecided":
             raise ValueError(f"Coulomb's right velocities are undecided: {self.reason}")
         segments = [
-            sets.Segment(self._floats(j.velocity), self._floats(j.end)) for j in self.jumps if j.end is not None
+            sets.LineSegment(self._floats(j.velocity), self._floats(j.end)) for j in self.jumps if j.end is not None
         ]
         points = [self._floats(jump.velocity) for jump in _isolated(self.jumps)]
         return (*segments, *([sets.Points(np.array(points))] if points else []))

@@ -14,9 +14,9 @@ from functools import reduce
 
 import sympy as sp
 
-from painleve.mechanics.hypotheses.claims import Claim, Decision, Kind, Status, decide
-from painleve.mechanics.hypotheses.findings import Finding
-from painleve.mechanics.hypotheses.region import Place, Region
+from painleve.theory.hypotheses.claims import Claim, ClaimKind, ClaimStatus, Decision, decide
+from painleve.theory.hypotheses.findings import Finding
+from painleve.theory.hypotheses.region import Place, Region
 
 __all__ = ["Level", "check_smoothness"]
 
@@ -36,7 +36,7 @@ class _Singularity:
 
     node: sp.Expr
     argument: sp.Expr
-    kind: Kind | None
+    kind: ClaimKind | None
 
     @property
     def claim(self) -> Claim:
@@ -50,30 +50,30 @@ def check_smoothness(region: Region, what: str, expressions: Sequence[sp.Expr], 
     singularities = _singularities(region, plain, level)
     for singularity in singularities:
         if singularity.kind is None:
-            return Finding(status=Status.UNDECIDED, sentence=f"nothing is known of {singularity.node} in {what}")
+            return Finding(status=ClaimStatus.UNDECIDED, sentence=f"nothing is known of {singularity.node} in {what}")
     decisions = [(s, decide(region, s.claim)) for s in singularities]
-    for status in (Status.REFUTED, Status.UNDECIDED, Status.SUPPORTED):
+    for status in (ClaimStatus.REFUTED, ClaimStatus.UNDECIDED, ClaimStatus.SUPPORTED):
         for singularity, decision in decisions:
             if decision.status is status:
                 return _open_finding(region, what, plain, level, singularity, decision)
     named = ", ".join(_shown(s.argument) for s, _ in decisions)
     why = f": on the ball no singularity is met by {named}" if named else ": no part of it has a singularity"
-    return Finding(status=Status.PROVED, sentence=f"{what} is {level.value}{why}")
+    return Finding(status=ClaimStatus.PROVED, sentence=f"{what} is {level.value}{why}")
 
 
 def _open_finding(
     region: Region, what: str, plain: list[sp.Expr], level: Level, s: _Singularity, decision: Decision
 ) -> Finding:
     claim = f"{_shown(s.argument)} {s.claim.kind.value}"
-    if decision.status is Status.SUPPORTED:
+    if decision.status is ClaimStatus.SUPPORTED:
         sentence = f"{what} is {level.value} where {claim}, which holds at the {decision.points} points tried"
-        return Finding(status=Status.SUPPORTED, sentence=sentence)
-    if decision.status is Status.REFUTED and decision.place is not None:
+        return Finding(status=ClaimStatus.SUPPORTED, sentence=sentence)
+    if decision.status is ClaimStatus.REFUTED and decision.place is not None:
         broken = _breaks(region, plain, s, decision.place)
         if broken is not None:
-            return Finding(status=Status.REFUTED, sentence=f"{what} {broken}", place=decision.place)
+            return Finding(status=ClaimStatus.REFUTED, sentence=f"{what} {broken}", place=decision.place)
     return Finding(
-        status=Status.UNDECIDED,
+        status=ClaimStatus.UNDECIDED,
         sentence=f"whether {what} is {level.value} where {_shown(s.node)} is not is undecided",
         place=decision.place,
     )
@@ -96,7 +96,7 @@ def _plain(expression: sp.Expr) -> sp.Expr:
 
 def _singularities(region: Region, expressions: Sequence[sp.Expr], level: Level) -> list[_Singularity]:
     """Inner parts first, each set of points once."""
-    found: dict[tuple[Kind | None, sp.Expr], _Singularity] = {}
+    found: dict[tuple[ClaimKind | None, sp.Expr], _Singularity] = {}
     for expression in expressions:
         for node in sp.postorder_traversal(expression):
             for singularity in _of_node(region, node, level):
@@ -112,26 +112,26 @@ def _of_node(region: Region, node: sp.Expr, level: Level) -> Iterator[_Singulari
     if node.is_Pow and node.exp.is_Integer:
         if node.exp > 0:
             return
-        kind = Kind.NONZERO
+        kind = ClaimKind.NONZERO
     elif node.is_Pow and node.exp.is_Rational:
-        kind = Kind.POSITIVE if smooth or node.exp < 0 else Kind.NONNEGATIVE
+        kind = ClaimKind.POSITIVE if smooth or node.exp < 0 else ClaimKind.NONNEGATIVE
     elif node.func is sp.log:
-        kind = Kind.POSITIVE
+        kind = ClaimKind.POSITIVE
     elif node.func in (sp.asin, sp.acos):
-        argument, kind = 1 - argument**2, Kind.POSITIVE if smooth else Kind.NONNEGATIVE
+        argument, kind = 1 - argument**2, ClaimKind.POSITIVE if smooth else ClaimKind.NONNEGATIVE
     elif node.func is sp.atan2:  # the cut is where y = 0 and x <= 0
         y, x = node.args
-        argument, kind = sp.sqrt(x**2 + y**2) + x, Kind.POSITIVE
+        argument, kind = sp.sqrt(x**2 + y**2) + x, ClaimKind.POSITIVE
     elif node.func in (sp.Abs, sp.sign):
         if not region.used([argument]) or (node.func is sp.Abs and not smooth):
             return
-        kind = Kind.NONZERO
+        kind = ClaimKind.NONZERO
     yield _Singularity(node=node, argument=argument, kind=kind)
 
 
 def _breaks(region: Region, expressions: Sequence[sp.Expr], s: _Singularity, place: Place) -> str | None:
     """How a formula inherits the singularity at that place, as the end of a sentence; None where it may not."""
-    if s.kind is not Kind.NONZERO:
+    if s.kind is not ClaimKind.NONZERO:
         unreal = s.node.func is not sp.atan2 and bool(region.enclose(s.argument, place) < 0)
         return f"is not real: {_shown(s.argument)} < 0 at {place}" if unreal else None
     z = sp.Dummy("z", real=True)
@@ -174,7 +174,7 @@ def _is_smooth_at(region: Region, expression: sp.Expr, place: Place) -> bool:
 
 
 def _is_nonzero(region: Region, expression: sp.Expr, place: Place) -> bool:
-    return Claim(kind=Kind.NONZERO, expressions=(expression,)).holds([region.enclose(expression, place)])
+    return Claim(kind=ClaimKind.NONZERO, expressions=(expression,)).holds([region.enclose(expression, place)])
 
 
 def _is_regular(region: Region, expression: sp.Expr, place: Place) -> bool:
