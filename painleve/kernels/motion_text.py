@@ -15,20 +15,22 @@ Rows: {rows}
 import math
 
 from painleve._jit import jit
-from painleve.core.codes import Branch
-from painleve.core.motion_codes import Change, Ending, FixedStep, Outcome
+from painleve.core.codes import ContactMode
+from painleve.core.motion_codes import Change, Ending, FixedStep, MemberOutcome
 from painleve.core.steps import free_change, is_tangential, quadratic_form
 {imports}
 
 D, ROWS = {dimension}, {row_count}
 {constants}
-FREE, STICK = int(Branch.FREE), int(Branch.STICK)
+FREE, STICK = int(ContactMode.FREE), int(ContactMode.STICK)
 CONTACT_DYNAMICS, MOREAU_JEAN = int(FixedStep.CONTACT_DYNAMICS), int(FixedStep.MOREAU_JEAN)
 ORDINARY, JUMP_WITHOUT_COLLISION = int(Change.ORDINARY), int(Change.JUMP_WITHOUT_COLLISION)
 REACHED_END, NOT_FINITE = int(Ending.REACHED_END), int(Ending.NOT_FINITE)
 DEGENERATE, NOT_CONVERGED = int(Ending.DEGENERATE), int(Ending.NOT_CONVERGED)
-JUMP, STICKS, LIFT_OFF, IMPACT = int(Outcome.JUMP), int(Outcome.STICK), int(Outcome.LIFT_OFF), int(Outcome.IMPACT)
-SLIDE, FLIGHT, FAILED = int(Outcome.SLIDE), int(Outcome.FLIGHT), int(Outcome.FAILED)
+JUMP, STICKS = int(MemberOutcome.JUMP), int(MemberOutcome.STICK)
+LIFT_OFF, IMPACT = int(MemberOutcome.LIFT_OFF), int(MemberOutcome.IMPACT)
+SLIDE, FLIGHT = int(MemberOutcome.SLIDE), int(MemberOutcome.FLIGHT)
+FAILED = int(MemberOutcome.FAILED)
 NOT_SOLVED = -1  # in place of a branch
 ITERATIONS, ACCURACY = 50, 1e-12  # of implicit steps: change, relative to the velocities, at which they are solved
 
