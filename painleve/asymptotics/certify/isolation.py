@@ -2,7 +2,8 @@
 
 No slip on the critical edge: p = a + s b < 0 at every other configuration of the ball in contact. With x = q_eps - q,
 P = det(M) p, and P + kappa g without a gradient, one of these is shown in every direction of x, in ball arithmetic:
-    P(x)/|x| < 0,      or      (P + kappa g)(x)/|x|^2 < 0 where g >= 0,      or      g(x)/|x| < 0.
+    P(x)/|x| < 0,      or      (P + kappa g)(x)/|x|^2 < 0 where g >= 0,      or      g(x)/|x| < 0,
+the last one where no coordinate but those of x can raise g (kappa = 0 where one can).
 The members are then free, B(u-, eps), or stick near u_tilde, or slip on the other edge near u-. With a radius R around
 u- that holds all members but the sticking ones, and -a.(S - u_tilde) <= eps r over those for a unit vector a, the point
 u- + t d, d the direction of A, is at least min(t - R, (L - t) a.d - eps r) away from A_eps; t and a are chosen.
@@ -122,7 +123,8 @@ class _Forms:
         self.P, self.g = self._orders(
             jets(expressions, variables, point, 2, bits=BITS), jets(expressions, variables, ball, 3, bits=BITS)
         )
-        self.kappa = flint.arb(0) if problem.carried > 0.0 else self._kappa()
+        self.carried = problem.carried > 0.0
+        self.kappa = flint.arb(0) if self.carried else self._kappa()
 
     def _orders(self, near: list[Jet], wide: list[Jet]) -> list[list[dict[tuple[int, ...], flint.arb]]]:
         tables = []
@@ -142,8 +144,8 @@ class _Forms:
         with flint.ctx.workprec(BITS):
             size = flint.arb(self.eps) * flint.arb("0.5 +/- 0.5")
             P, g = [_form(t, e) for t in self.P], [_form(t, e) for t in self.g]
-            first_order = (f[0] + size * (f[1] + size * f[2]) for f in (g, P))
-            if self.variables == 2 and any(f < 0 for f in first_order):
+            first_order = (f[0] + size * (f[1] + size * f[2]) for f in ((P,) if self.carried else (P, g)))
+            if any(f < 0 for f in first_order):
                 return True
             return bool(P[1] + self.kappa * g[1] + size * (P[2] + self.kappa * g[2]) < 0)
 
