@@ -64,7 +64,7 @@ def test_a_hinged_rod_keeps_the_middle_of_A_away_from_its_members_by_half_of_one
 
 
 def carried_scene():
-    """gamma ~ -x^2 - z^2 - 20 z^3 and g = z/2 - y: at z < 0, where gamma may be positive, y alone carries the contact."""
+    """gamma ~ -x^2 - z^2 - 20 z^3 and g = z/2 - y: at z < 0, where gamma may be positive, y alone makes contact."""
     x, z, y = (Coordinate(name=n, unit="m", sentence=f"coordinate {n}") for n in "xzy")
     mu = sp.Rational(5, 4) + x.symbol**2 + z.symbol**2 + 20 * z.symbol**3
     return make_scene(
