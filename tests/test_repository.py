@@ -13,7 +13,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).parents[1]
-FOLDERS = (".ci", "data/reference", "notebooks", "painleve", "studies", "tests")
+FOLDERS = (".ci", "data/reference", "docs", "notebooks", "painleve", "studies", "tests")
 METADATA = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 LOCK = (ROOT / "requirements.lock").read_text(encoding="utf-8")
 
@@ -23,7 +23,7 @@ PUBLISHERS = {"arxiv.org", "doi.org"}
 
 def texts() -> dict[str, str]:
     """The project's text files by their path, without what the tools make beside them."""
-    paths = [path for path in ROOT.iterdir() if path.is_file()]
+    paths = [path for path in ROOT.iterdir() if path.is_file() and path.name != ".git"]  # a work tree's is a file
     paths += [path for folder in FOLDERS for path in (ROOT / folder).rglob("*") if path.is_file()]
     found = {}
     for path in paths:

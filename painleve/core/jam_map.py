@@ -38,8 +38,8 @@ Uniformity is exact in the limit: the number of hops (steps) to the edge is a sm
 neglected: beta/c at the last contact, O(h^r) with the tip kept and O(h^(r/(1+r))) in the strict test. At finite h hops
 last whole numbers of steps, few of them far out, and the phases that arrive from one start bunch as h varies: the
 fraction then scatters about the map's by some hundredths. Over starts and step sizes together it is the map's.
-Source: derived for this project (its notes, section 6, state the laws); eigenvalues after F. Génot and B. Brogliato,
-Eur. J. Mech. A Solids 18 (1999) 653-677.
+Source: docs/theory.md, section 6.6; eigenvalues after F. Génot and B. Brogliato, Eur. J. Mech. A Solids 18 (1999)
+653-677.
 """
 
 from __future__ import annotations

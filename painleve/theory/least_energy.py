@@ -1,4 +1,4 @@
-"""The jump of law (7) at a tangential contact: the impulse of least kinetic energy, exactly (docs/theory.md, 3).
+"""The jump of law (7) at a tangential contact, exactly: the impulse of least energy (docs/theory.md, section 3.1).
 
 With g = 0 and <u-, n> = 0 an impulse (r_n, r_t) keeps the velocity tangential where a r_n + b.r_t = 0. In the plane
 and where gamma = 0 these are the multiples of one ray rho = (1, s), the energy least at r_n = max(0, -v_t.s/s.Q s).
