@@ -1,4 +1,4 @@
-"""Critical states along curves: published values, the notes' examples, and scans that know nothing of the method."""
+"""Critical states along curves: published values, the examples of docs/theory.md, section 6, and scans that know nothing of the method."""
 
 from __future__ import annotations
 
@@ -217,7 +217,7 @@ def test_along_the_floor_the_minimal_scene_s_maximum_is_approached_from_penetrat
 # --- the arm along the table -----------------------------------------------------------------------------------------
 
 
-def test_the_arm_along_the_table_has_the_maximum_of_the_notes_and_it_is_isolated():
+def test_the_arm_along_the_table_has_the_known_maximum_and_it_is_isolated():
     """Equal unit links at the depth 1.95: phi1 = -0.163, phi2 = 0.272, mu = 0.5964."""
     found = critical_states(ARM, "phi1", low="-1/4", high="0")
     (maximum,) = [x for x in found.extrema if x.extremum is Extremum.MAXIMUM]

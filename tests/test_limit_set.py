@@ -97,7 +97,7 @@ def test_after_the_jump_the_tip_is_at_rest_exactly(scene, name):
 
 
 @pytest.mark.parametrize(("scene", "name"), [n for n in NAMED if n[1] != "sliding"])
-def test_the_jump_s_impulse_is_lambda_tilde_rho_of_the_notes(scene, name):
+def test_the_jump_s_impulse_is_lambda_tilde_rho(scene, name):
     """lambda = -v_t s*/(rho.G rho) with rho = (1, s*), s* = -a/b; and u_tilde = u- + lambda M^-1 W rho."""
     limit = limit_of(scene, name)
     with mpmath.workdps(DIGITS):

@@ -24,7 +24,7 @@ RADII = [mpmath.mpf(10) ** -n for n in (2, 4, 6)]
 
 
 def minimal(height: sp.Expr, gamma: sp.Expr) -> Scene:
-    """The notes' minimal scene, g = height(x) - y and M^-1 = [[4, 1], [1, 1]], with friction such that
+    """The minimal scene of docs/theory.md, section 6.2, g = height(x) - y and M^-1 = [[4, 1], [1, 1]], with friction such that
     gamma |grad g|^2 is the given function."""
     compliance = sp.Matrix([[4, 1], [1, 1]])
     w_n, H = sp.Matrix([-sp.diff(height, x), 1]), sp.Matrix([1, 0])
@@ -46,7 +46,7 @@ def minimal(height: sp.Expr, gamma: sp.Expr) -> Scene:
 
 
 def coupled(beta: sp.Expr) -> Scene:
-    """The same as the notes give it: M^-1 = [[4, beta], [beta, 1]], mu = 1, g = -y, gamma = 1 - |beta|."""
+    """The same with a flat floor: M^-1 = [[4, beta], [beta, 1]], mu = 1, g = -y, gamma = 1 - |beta|."""
     return make_scene(
         name="coupled",
         sentence="a minimal scene",
@@ -103,7 +103,12 @@ DECIDED = {
     "kappa > 0, gamma zero along a curved floor": (x**2, y - x**2, UNDECIDED, "semidefinite"),
     "kappa = 0, negative definite": (FLAT, -(x**2) - x * y - y**2, ISOLATED, "gradgamma = 0.*negative definite"),
     "kappa = 0, positive definite": (FLAT, x**2 + y**2, APPROACHED, "positive in some"),
-    "kappa = 0, the notes' case: only penetration is positive": (FLAT, y**2 - x**2, APPROACHED, "positive in some"),
+    "kappa = 0, the case of beta = 1 + x^2 - y^2: only penetration is positive": (
+        FLAT,
+        y**2 - x**2,
+        APPROACHED,
+        "positive in some",
+    ),
     "kappa = 0, a saddle": (FLAT, x * y, APPROACHED, "positive in some"),
     "kappa = 0, negative form on a curved floor": (x**2, -(x**2) - y**2, ISOLATED, "negative definite"),
     "kappa = 0, semidefinite": (FLAT, -((x + y) ** 2), UNDECIDED, "semidefinite"),
@@ -143,7 +148,7 @@ def test_each_argument_decides_what_brute_force_sees_or_says_that_it_does_not(he
         (-1 - x**2 + y**2, APPROACHED, "positive in some direction"),
     ],
 )
-def test_the_notes_minimal_scene_shows_any_kind_that_its_coupling_asks_for(beta, kind, reason):
+def test_the_minimal_scene_shows_any_kind_that_its_coupling_asks_for(beta, kind, reason):
     scene = coupled(beta)
     limit = limit_set(make_state(scene, keys={"slip": int(sp.sign(beta.subs({x: 0, y: 0})))}))
     assert limit.kind == "segment"
@@ -197,7 +202,7 @@ def test_the_worn_tip_is_isolated_exactly_above_25_sixths(k, kind, signs):
 
 
 def test_just_above_the_threshold_a_small_ball_is_needed_to_see_that_the_worn_tip_is_isolated():
-    """The notes: at k = 4.467 and eps = 0.1, 29 % of the configurations still have gamma > 0."""
+    """docs/theory.md, section 6.3: at k = 4.467 and eps = 0.1, 29 % of the configurations still have gamma > 0."""
     state = make_state(load_scene("worn_tip_rod"), "approached", parameters={"k": "4467/1000"})
     with mpmath.workdps(30):
         positive = [gamma_beside(state, mpmath.mpf(10) ** -2 * i / 4)[1] > 0 for i in range(1, 41)]

@@ -236,7 +236,7 @@ def _excess_by_bins(problem: LocalProblem, offset: np.ndarray) -> float:
     return float(sets.excess(segment, sets.Cloud(np.stack([t[kept], rho[kept]], axis=1))).bounds.upper)
 
 
-def test_slips_at_the_double_zero_are_as_rare_as_the_notes_say():
+def test_slips_at_the_double_zero_are_as_rare_as_once_measured():
     """Section 6 of docs/theory.md: of 20,000 uniform samples 183, 15 and 1 slipped at eps = 1e-1, 1e-2, 1e-3."""
     limit, many = problem_of("slender_rod", "double_zero").limit, 10**7
     for eps, noted in ((1e-1, 183), (1e-2, 15), (1e-3, 1)):

@@ -92,7 +92,7 @@ def test_the_rod_s_critical_states_are_zeros_of_the_closed_form_of_gamma():
         ("approached", Fraction(-1, 3), Fraction(1, 8), "1.06183", None),
     ],
 )
-def test_the_arm_s_critical_states_have_the_half_angle_tangents_and_masses_of_the_notes(
+def test_the_arm_s_critical_states_have_the_half_angle_tangents_and_masses_of_section_6(
     name, first, second, ratio, friction
 ):
     state = make_state(ARM, name)
