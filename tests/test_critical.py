@@ -1,4 +1,4 @@
-"""Critical states along curves: published values, the examples of docs/theory.md, section 6, and scans that know nothing of the method."""
+"""Critical states along curves: published values, examples of docs/theory.md, section 6, and independent scans."""
 
 from __future__ import annotations
 

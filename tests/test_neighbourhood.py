@@ -24,8 +24,8 @@ RADII = [mpmath.mpf(10) ** -n for n in (2, 4, 6)]
 
 
 def minimal(height: sp.Expr, gamma: sp.Expr) -> Scene:
-    """The minimal scene of docs/theory.md, section 6.2, g = height(x) - y and M^-1 = [[4, 1], [1, 1]], with friction such that
-    gamma |grad g|^2 is the given function."""
+    """The minimal scene (docs/theory.md, section 6.2) with g = height(x) - y and M^-1 = [[4, 1], [1, 1]], and friction
+    such that gamma |grad g|^2 is the given function."""
     compliance = sp.Matrix([[4, 1], [1, 1]])
     w_n, H = sp.Matrix([-sp.diff(height, x), 1]), sp.Matrix([1, 0])
     a, b = (w_n.T * compliance * w_n)[0], (w_n.T * compliance * H)[0]
