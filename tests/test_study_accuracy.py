@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from study_runs import load_study
 
+import studies.speed_accuracy.claim as speed_accuracy
+import studies.where_methods_fail.claim as where_methods_fail
 from painleve.asymptotics.local import make_local_problem
 from painleve.asymptotics.member import make_member
 from painleve.asymptotics.methods import METHODS
@@ -11,11 +12,11 @@ from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 from painleve.sets import Cloud, excess
 from painleve.store import load
-from painleve.sweep.naive import naive_distance, naive_members, point_distances, uniform_ball
-from painleve.sweep.near_critical import NearCase
-from painleve.sweep.text_table import text_table
-from painleve.sweep.work_precision import RUN_OUTCOMES
 from painleve.theory.limit_set import limit_set
+from studies.benchmark.naive import naive_distance, naive_members, point_distances, uniform_ball
+from studies.benchmark.work_precision import RUN_OUTCOMES
+from studies.text_table import text_table
+from studies.where_methods_fail.near_critical import NearCase
 
 
 def limit(scene: str, state: str):
@@ -25,13 +26,13 @@ def limit(scene: str, state: str):
 @pytest.fixture(scope="module")
 def speed(tmp_path_factory):
     output = tmp_path_factory.mktemp("speed")
-    return load_study("speed_accuracy").run(output, quick=True), load(output / "speed_accuracy.h5")
+    return speed_accuracy.run(output, quick=True), load(output / "speed_accuracy.h5")
 
 
 @pytest.fixture(scope="module")
 def fail(tmp_path_factory):
     output = tmp_path_factory.mktemp("fail")
-    return load_study("where_methods_fail").run(output, quick=True), output
+    return where_methods_fail.run(output, quick=True), output
 
 
 @pytest.mark.parametrize(("scene", "state"), [("slender_rod", "critical"), ("worn_tip_rod", "paradox")])

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from study_runs import load_study
 
+import studies.convergence.claim as convergence
 from painleve.dynamics.graph_distance import graph_distance, velocity_graph
 from painleve.dynamics.schemes import SCHEME_NAMES, load_scheme
 from painleve.dynamics.simulate import simulate
@@ -19,9 +19,9 @@ from painleve.errors import InputError
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 from painleve.store import load
-from painleve.sweep import StudyResult
-from painleve.sweep.convergence import MotionEffort, sweep_convergence
-from painleve.sweep.motion_problems import PROBLEMS, make_reference
+from studies.convergence.measure import MotionEffort, sweep_convergence
+from studies.convergence.motions import PROBLEMS, make_reference
+from studies.study import StudyResult
 
 BY_NAME = {p.name: p for p in PROBLEMS}
 COLLISIONS = ("point_impact", "point_fall", "rod_impact", "arm_impact", "rod_fall")
@@ -30,7 +30,7 @@ COLLISIONS = ("point_impact", "point_fall", "rod_impact", "arm_impact", "rod_fal
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path]:
     folder = tmp_path_factory.mktemp("convergence")
-    return load_study("convergence").run(folder, quick=True), folder
+    return convergence.run(folder, quick=True), folder
 
 
 def test_a_jump_shifted_by_a_step_costs_the_step_and_not_its_height() -> None:

@@ -8,21 +8,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from study_runs import load_study
 
+import studies.laws.claim as laws
 from painleve.errors import InputError
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import State, make_state
 from painleve.store import load
-from painleve.sweep import StudyResult
-from painleve.sweep.laws import map_laws
 from painleve.theory.limit_set import limit_set
+from studies.laws.measure import map_laws
+from studies.study import StudyResult
 
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path]:
     folder = tmp_path_factory.mktemp("laws")
-    return load_study("laws").run(folder, quick=True), folder
+    return laws.run(folder, quick=True), folder
 
 
 @pytest.fixture(scope="module")

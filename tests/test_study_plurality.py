@@ -10,15 +10,15 @@ import pytest
 from numba import njit
 from scipy.optimize import brentq
 from scipy.special import rgamma
-from study_runs import load_study
 
+import studies.plurality.claim as plurality
 from painleve.core.jam_map import hops_from, jam_fraction, limit_law
 from painleve.dynamics.genot_brogliato import find_friction, singular_point
 from painleve.dynamics.modes import ContactPoint, Mode
 from painleve.errors import InputError
 from painleve.store import load
-from painleve.sweep import StudyResult
-from painleve.sweep.jam_law import JamCase, measure_jam_law
+from studies.plurality.jam_law import JamCase, measure_jam_law
+from studies.study import StudyResult
 
 PHASES = 4000
 
@@ -199,7 +199,7 @@ def test_the_scheme_jams_as_often_as_the_map_says_where_the_map_leaves_out_littl
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path]:
     folder = tmp_path_factory.mktemp("plurality")
-    return load_study("plurality").run(folder, quick=True), folder
+    return plurality.run(folder, quick=True), folder
 
 
 def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyResult, Path]) -> None:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
 from dataclasses import replace
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
@@ -21,13 +19,15 @@ from painleve.errors import InputError
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 from painleve.store import load
-from painleve.sweep import StudyResult, map_regimes
-from painleve.sweep.reference.compare import FactStatus, Finding, compare
-from painleve.sweep.reference.contact import regime, step_solutions
-from painleve.sweep.reference.facts import Fact, FactKind, load_facts
-from painleve.sweep.reference.rod import eigenvalue_ratio
-from painleve.sweep.reference.routes import ROUTES, reproduce
-from painleve.sweep.reference.slip import ArcEnd, derive_slip, make_flow
+from painleve.sweep import map_regimes
+from studies.reference import claim
+from studies.reference.compare import FactStatus, Finding, compare
+from studies.reference.contact import regime, step_solutions
+from studies.reference.facts import Fact, FactKind, load_facts
+from studies.reference.rod import eigenvalue_ratio
+from studies.reference.routes import ROUTES, reproduce
+from studies.reference.slip import ArcEnd, derive_slip, make_flow
+from studies.study import StudyResult
 
 ROOT = Path(__file__).parents[1]
 FACTS = load_facts(ROOT / "data" / "reference" / "facts.toml")
@@ -225,20 +225,10 @@ def test_regimes_are_those_of_the_map_of_regimes() -> None:
     assert len(seen) == 4
 
 
-def load_study() -> ModuleType:
-    path = ROOT / "studies" / "reference.py"
-    spec = importlib.util.spec_from_file_location("study_reference", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path]:
     folder = tmp_path_factory.mktemp("reference")
-    return load_study().run(folder, quick=True), folder
+    return claim.run(folder, quick=True), folder
 
 
 def test_a_quick_run_makes_its_files_and_names_them(finished: tuple[StudyResult, Path]) -> None:

@@ -5,15 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from study_runs import load_study
 
+import studies.theorem1.claim as theorem1
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 from painleve.store import load
-from painleve.sweep import StudyResult
 from painleve.theory.classification import classify
+from studies.study import StudyResult
 
-SCENE_NAMES = load_study("theorem1").SCENES
+SCENE_NAMES = theorem1.SCENES
 UNMAPPED = {f"gamma_map_spatial_rod_ellipse.{suffix}" for suffix in ("h5", "pdf", "png")}  # no one coefficient
 ROOTS = [
     ("spatial_rod", "critical_oblique"),
@@ -27,7 +27,7 @@ STATES = [(scene, state.name) for scene in SCENE_NAMES for state in load_scene(s
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path]:
     folder = tmp_path_factory.mktemp("theorem1")
-    return load_study("theorem1").run(folder, quick=True), folder
+    return theorem1.run(folder, quick=True), folder
 
 
 def rows(finished: tuple[StudyResult, Path]) -> dict[tuple[str, str], dict]:

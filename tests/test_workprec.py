@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from painleve.errors import InputError
-from painleve.workprec import Run, RunOutcome, measure
+from studies.benchmark.records import Run, RunOutcome, measure
 
 
 class Clock:

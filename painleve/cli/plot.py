@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from painleve.cli.common import add_command, add_json, print_json
+from painleve.cli.studies import drawings_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -33,12 +34,16 @@ def register(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from painleve.plotting import draw, save_figure
+    from painleve.plotting.draw import DRAWINGS, draw, save_figure
     from painleve.store import check_writable, load
 
     target = check_writable(options.output or options.file.with_suffix(".gif" if options.animate else ".png"))
     dataset = load(options.file)
-    written = _animate(dataset, target) if options.animate else save_figure(draw(dataset), target)
+    if options.animate:
+        written = _animate(dataset, target)
+    else:
+        kind = str(dataset.attrs["kind"])
+        written = save_figure(draw(dataset, None if kind in DRAWINGS else drawings_of(kind)), target)
     if options.json:
         print_json({"file": str(written)})
     else:

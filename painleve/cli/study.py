@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import ast
-import importlib.util
-import sys
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 from painleve.cli.common import add_command, add_json, count, print_json
+from painleve.cli.studies import CHECKOUT, claim_of, study_names, title_of
 from painleve.errors import InputError
-
-CHECKOUT = Path(__file__).parents[2]
 
 
 def register(commands: Any) -> None:
@@ -34,19 +29,16 @@ def register(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    folder = CHECKOUT / "studies"
-    names = sorted(path.stem for path in folder.glob("*.py"))
-    if not names:
-        raise InputError("there are no studies beside this installation; run them from a checkout of the sources")
+    names = study_names()
     if options.name is None:
-        return _list(folder, names, options.json)
+        return _list(names, options.json)
     if options.name not in names:
         raise InputError(f"study: no {options.name!r}; choose one of {', '.join(names)}")
     output = options.output or CHECKOUT / "data" / options.name
     if output.exists() and not output.is_dir():
         raise InputError(f"output {output}: is a file; give a folder")
     output.mkdir(parents=True, exist_ok=True)
-    result = _load(folder / f"{options.name}.py").run(output, quick=options.quick, seed=options.seed)
+    result = claim_of(options.name).run(output, quick=options.quick, seed=options.seed)
     if options.json:
         files = [str(path) for path in result.files]
         print_json({"study": options.name, "status": result.status, "files": files, **result.data})
@@ -57,26 +49,11 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _list(folder: Path, names: list[str], as_json: bool) -> int:
-    sentences = {name: _sentence(folder / f"{name}.py") for name in names}
+def _list(names: list[str], as_json: bool) -> int:
+    sentences = {name: title_of(name) for name in names}
     if as_json:
         print_json(sentences)
         return 0
     for name, sentence in sentences.items():
         print(f"{name:20} {sentence}")
     return 0
-
-
-def _sentence(path: Path) -> str:
-    """The first line of a study's docstring, read and not imported: the list needs none of what the studies need."""
-    return (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "").splitlines()[0]
-
-
-def _load(path: Path) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(f"painleve_study_{path.stem}", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module

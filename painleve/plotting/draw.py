@@ -13,40 +13,25 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from painleve.errors import InputError
-from painleve.plotting.convergence import draw_convergence
 from painleve.plotting.distances import draw_distances
 from painleve.plotting.gamma_map import draw_gamma_map
-from painleve.plotting.hard_cases import draw_near_critical, draw_rounding, draw_sampled_bound
-from painleve.plotting.laws import draw_laws
 from painleve.plotting.members import draw_members
-from painleve.plotting.plurality import draw_initial_layer, draw_jam_law, draw_step_sizes
-from painleve.plotting.reference import draw_reference
 from painleve.plotting.regimes import draw_regimes
 from painleve.plotting.style import STYLE
 from painleve.plotting.trajectory import draw_trajectory
 from painleve.plotting.whole_file import written_aside
-from painleve.plotting.work_precision import draw_work_precision
 from painleve.store import check_writable
 
-__all__ = ["draw", "save_figure"]
+__all__ = ["DRAWINGS", "Drawing", "draw", "save_figure"]
 
-DRAWINGS: Mapping[str, Callable[[xr.Dataset], Figure]] = MappingProxyType(
+Drawing = Callable[[xr.Dataset], Figure]
+DRAWINGS: Mapping[str, Drawing] = MappingProxyType(
     {
         "distances": draw_distances,
         "members": draw_members,
         "gamma_map": draw_gamma_map,
         "regimes": draw_regimes,
         "trajectory": draw_trajectory,
-        "step_sizes": draw_step_sizes,
-        "jam_law": draw_jam_law,
-        "initial_layer": draw_initial_layer,
-        "work_precision": draw_work_precision,
-        "sampled_bound": draw_sampled_bound,
-        "rounding": draw_rounding,
-        "near_critical": draw_near_critical,
-        "convergence": draw_convergence,
-        "laws": draw_laws,
-        "reference": draw_reference,
     }
 )
 # Without dates, the same dataset gives the same bytes.
@@ -59,14 +44,17 @@ class Recorded(Protocol):
     def to_xarray(self) -> xr.Dataset: ...
 
 
-def draw(result: xr.Dataset | Recorded) -> Figure:
-    """The figure of a dataset of this package, or of a trajectory. Raises InputError for a kind that has none."""
+def draw(result: xr.Dataset | Recorded, more: Mapping[str, Drawing] | None = None) -> Figure:
+    """The figure of a dataset of this package, or of a trajectory. Raises InputError for a kind that has none.
+
+    `more`: drawings of further kinds, such as those of a study.
+    """
     dataset = result if isinstance(result, xr.Dataset) else result.to_xarray()
-    kind = str(dataset.attrs.get("kind", "unknown"))
-    if kind not in DRAWINGS:
-        raise InputError(f"no figure for a dataset of kind {kind!r}; there are figures of {', '.join(DRAWINGS)}")
+    kind, drawings = str(dataset.attrs.get("kind", "unknown")), {**DRAWINGS, **(more or {})}
+    if kind not in drawings:
+        raise InputError(f"no figure for a dataset of kind {kind!r}; there are figures of {', '.join(drawings)}")
     with mpl.rc_context(STYLE):
-        figure = DRAWINGS[kind](dataset)
+        figure = drawings[kind](dataset)
         # Laid out once here and not again for each format: that would be half of the time of saving it.
         figure.draw_without_rendering()
         figure.set_layout_engine("none")

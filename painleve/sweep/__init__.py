@@ -4,6 +4,5 @@ from painleve.sweep.distances import sweep_distances
 from painleve.sweep.gamma_map import map_gamma
 from painleve.sweep.members import sweep_members
 from painleve.sweep.regimes import map_regimes
-from painleve.sweep.study import StudyResult
 
-__all__ = ["StudyResult", "map_gamma", "map_regimes", "sweep_distances", "sweep_members"]
+__all__ = ["map_gamma", "map_regimes", "sweep_distances", "sweep_members"]

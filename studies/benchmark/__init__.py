@@ -1,0 +1,1 @@
+"""What several studies measure with: timed records, the naive baseline, error against work."""

@@ -1,0 +1,1 @@
+"""Observed orders of the time-stepping schemes."""

@@ -1,0 +1,107 @@
+"""Law (7) against Coulomb's law: how many solutions the second has, and how far the first is from the nearest."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.contour import QuadContourSet
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from painleve.plotting.draw import Drawing
+from painleve.plotting.style import PALETTE, label_outside, legend_below, panels, with_unit
+
+__all__ = ["DRAWINGS", "draw_laws"]
+
+# Light to dark, so that a grey print tells them apart too; a double slip on a border makes an even number.
+SHADES = ("#F2F2F2", PALETTE["sky"], PALETTE["blue"], PALETTE["black"])
+LEVELS = 9
+NOTHING = 0.05  # of the first step of colour: a smaller distance stays white
+TICKS = (-np.pi, -np.pi / 2.0, 0.0, np.pi / 2.0, np.pi)
+
+
+def draw_laws(dataset: xr.Dataset) -> Figure:
+    """A row for each configuration and normal velocity: the number of solutions, and the distance of the two laws."""
+    rows = [(s, a) for s in range(dataset.sizes["state"]) for a in range(dataset.sizes["approach"])]
+    figure, axes = panels(2 * len(rows), columns=2, height=2.1, shared=True)
+    levels = np.array(MaxNLocator(LEVELS).tick_values(0.0, float(dataset["nearest"].max()) or 1.0))
+    levels[0] = NOTHING * levels[1]
+    for k, (state, approach) in enumerate(rows):
+        chosen = dataset.isel(state=state, approach=approach)
+        left, right = axes[2 * k : 2 * k + 2]
+        _draw_numbers(left, chosen)
+        filled = _draw_distances(right, chosen, levels)
+        for axis in (left, right):
+            _draw_edges(axis, chosen)
+        v_n = float(chosen["approach"])
+        problem = "tangential, $v_n = 0$" if v_n == 0.0 else f"$v_n = {v_n:g}\\,|v_t|$"
+        left.set_title(f"{chosen['state'].item()}, {problem}")
+        right.set_title(f"{chosen['state'].item()}, {problem}")
+    axes[0].set_title(f"Number of solutions of Coulomb's law\n{axes[0].get_title()}")
+    axes[1].set_title(f"Distance of law (7) from the nearest of them\n{axes[1].get_title()}")
+    direction = with_unit("direction of the slip against $b$", dataset["direction"])
+    label_outside(axes, 2, direction, "coefficient of friction $\\mu$")
+    axes[0].set_xticks(TICKS, ["−π", "−π/2", "0", "π/2", "π"])
+    label = with_unit(f"distance at a slip of speed 1; white: below {levels[0]:.2g}", dataset["nearest"])
+    figure.colorbar(filled, ax=axes[1::2], label=label, format="%.2g", pad=0.02, aspect=40, ticks=levels[1:])
+    legend_below(figure, axes, columns=3)
+    return figure
+
+
+def _draw_numbers(axis: Axes, chosen: xr.Dataset) -> None:
+    most = len(SHADES)
+    axis.pcolormesh(
+        chosen["direction"],
+        chosen["friction"],
+        chosen["solutions"].clip(max=most),
+        cmap=ListedColormap(SHADES),
+        norm=BoundaryNorm(np.arange(most + 1) + 0.5, most),
+        shading="nearest",
+        rasterized=True,
+    )
+    for number in range(1, min(int(chosen["solutions"].max()), most) + 1):
+        label = f"{number} solution{'s' * (number > 1)}" + " or more" * (number == most)
+        axis.plot(
+            [],
+            [],
+            marker="s",
+            markersize=8,
+            linestyle="none",
+            color=SHADES[number - 1],
+            markeredgecolor="black",
+            markeredgewidth=0.4,
+            label=label,
+        )
+
+
+def _draw_distances(axis: Axes, chosen: xr.Dataset, levels: np.ndarray) -> QuadContourSet:
+    place = chosen["direction"], chosen["friction"], chosen["nearest"]
+    filled = axis.contourf(*place, levels=levels, cmap="cividis_r")
+    axis.contour(*place, levels=levels[:-1], colors="black", linewidths=0.3, alpha=0.6)
+    return filled
+
+
+def _draw_edges(axis: Axes, chosen: xr.Dataset) -> None:
+    critical = float(chosen["critical_friction"])
+    axis.axhline(critical, color=PALETTE["vermilion"], linewidth=1.5, label="$\\mu_c$, where $\\gamma = 0$")
+    if float(chosen["approach"]) < 0.0:
+        return
+    curves = {"driven": ("--", "friction would drive the slip inside"), "projected": (":", "law (7) jumps inside")}
+    for name, (line, label) in curves.items():
+        for side in (1.0, -1.0):
+            axis.plot(
+                side * chosen[name],
+                chosen["friction"],
+                color=PALETTE["black"],
+                linestyle=line,
+                linewidth=1.3,
+                label=label,
+            )
+
+
+DRAWINGS: Mapping[str, Drawing] = MappingProxyType({"laws": draw_laws})

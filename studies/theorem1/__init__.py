@@ -1,0 +1,1 @@
+"""Theorem 1 on every named state of the library."""

@@ -1,0 +1,1 @@
+"""Rare slips, cancellation, and parameters near a critical value."""
