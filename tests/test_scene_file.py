@@ -18,10 +18,7 @@ from painleve.kernels.source import scene_source
 from painleve.mechanics.derive import derive
 from painleve.mechanics.friction import Disc, Ellipse, Polygon, Segment
 from painleve.mechanics.library import load_scene
-from painleve.mechanics.scene_file.names import IN_TRAJECTORIES, why_no_symbol
 from painleve.mechanics.state import make_state
-from painleve.sweep.distance_table import DistanceTable
-from painleve.sweep.grid import make_grid
 
 # --- what a file says ------------------------------------------------------------------------------------------------
 
@@ -168,19 +165,9 @@ def test_a_dataset_keeps_the_text_of_its_scene_from_which_the_scene_is_read_agai
     rod.unlink()
     dataset = painleve.load(tmp_path / "motion.h5")
     assert run_json(capsys, "plot", str(tmp_path / "motion.h5"))["file"] == str(tmp_path / "motion.png")
-    coordinates = {name for c in load_scene("slender_rod").coordinates for name in (c.name, f"u_{c.name}")}
-    assert {str(name) for name in dataset.variables} <= IN_TRAJECTORIES | coordinates
     (tmp_path / "again.toml").write_text(dataset.attrs["scene_text"])
     assert dataset.attrs["scene_file"] == str(rod)
     assert load_scene(tmp_path / "again.toml").inertia == load_scene("slender_rod").inertia
-
-
-def test_no_coordinate_parameter_or_key_of_a_file_can_have_the_name_of_another_variable_of_a_sweep():
-    """A table of distances has as variables what is reserved, and the swept parameter."""
-    grid = make_grid(load_scene("slender_rod"), states=["paradox"], over={"mu": [1, 2]})
-    names = {str(name) for name in DistanceTable(grid, np.array([1e-3])).dataset({}).variables} - {"mu", "mu_exact"}
-    assert len(names) > 30
-    assert [name for name in names if why_no_symbol(name, coordinate=False) is None] == []
 
 
 @pytest.mark.parametrize(("table", "name", "before"), [("parameters", "theta", "gravity"), ("keys", "mu", "slip")])

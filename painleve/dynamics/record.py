@@ -10,6 +10,7 @@ import xarray as xr
 
 from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Change
+from painleve.dataset_names import IN_TRAJECTORIES, hold_to
 from painleve.dynamics.contact_rows import tangential_names
 from painleve.mechanics.scene import Scene
 
@@ -29,7 +30,8 @@ def record(trajectory: Trajectory) -> xr.Dataset:
     """
     scene = trajectory.start.scene
     with np.errstate(over="ignore", invalid="ignore"):  # energies of a motion that all but leaves the numbers
-        variables = {**_motion(trajectory), **_contact(trajectory), **_outline(trajectory)}
+        motion = _motion(trajectory)
+        variables = {**motion, **_contact(trajectory), **_outline(trajectory)}
     time = ("time", trajectory.t, {"units": "s", "long_name": "time along the trajectory"})
     attributes = {
         "title": f"Trajectory of {scene.name} by {trajectory.scheme}: {scene.sentence}",
@@ -44,7 +46,9 @@ def record(trajectory: Trajectory) -> xr.Dataset:
             f"{s.name} = {x:.17g}" for s, x in zip(scene.parameters, trajectory.start.p, strict=True)
         ),
     }
-    return xr.Dataset(variables, {"time": time}, attributes)
+    dataset = xr.Dataset(variables, {"time": time}, attributes)
+    hold_to(IN_TRAJECTORIES, [*dataset.variables, *dataset.dims], motion)
+    return dataset
 
 
 def _number(values: np.ndarray, sentence: str, unit: str, dims: tuple[str, ...] = ("time",)) -> xr.Variable:

@@ -9,6 +9,7 @@ import xarray as xr
 
 from painleve.asymptotics.member import Member
 from painleve.asymptotics.theorem import Evidence, Verdict
+from painleve.dataset_names import IN_SWEEPS, hold_to
 from painleve.errors import InputError
 from painleve.sets import Bounds
 from painleve.sweep.grid import SweepGrid
@@ -117,7 +118,9 @@ class DistanceTable:
             "law_branch": text(["law_branch"], list(LAW_BRANCHES), "branch of the discrete contact law S"),
             "coordinate": text(["coordinate"], [c.name for c in scene.coordinates], "coordinate of the configuration"),
         }
-        return xr.Dataset(variables, coordinates, dict(attributes))
+        dataset = xr.Dataset(variables, coordinates, dict(attributes))
+        hold_to(IN_SWEEPS, [*dataset.variables, *dataset.dims], self.grid.own_names)
+        return dataset
 
     def _eps_variables(self) -> dict[str, xr.Variable]:
         dims, unit = (*self.grid.dims, "eps"), velocity_unit(self.grid.scene)

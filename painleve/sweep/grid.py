@@ -11,6 +11,7 @@ import numpy as np
 import sympy as sp
 import xarray as xr
 
+from painleve.dataset_names import EXACT, IN_SWEEPS
 from painleve.errors import InputError
 from painleve.exact.parse import exact_number
 from painleve.mechanics.scene import Scene
@@ -18,8 +19,6 @@ from painleve.mechanics.state import Number, State, make_state
 from painleve.sweep.variables import text
 
 __all__ = ["SweepGrid", "make_grid", "meaning"]
-
-RESERVED = {"state", "eps", "law_branch", "coordinate", "member", "path", "friction"}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,6 +53,11 @@ class SweepGrid:
             (keys if _is_key(self.scene, name) else parameters)[name] = values[place]
         return make_state(self.scene, self.names[index[0]], keys=keys, parameters=parameters)
 
+    @property
+    def own_names(self) -> tuple[str, ...]:
+        """The names in the dataset that are the scene's: those of what is swept."""
+        return (*self.over, *(f"{name}{EXACT}" for name in self.over))
+
     def coordinates(self) -> dict[str, xr.Variable]:
         """Labels of the states, and the swept values: rounded, and exactly as text."""
         found = {"state": text(["state"], list(self.labels), "label of the exact state (q, u-, parameters)")}
@@ -61,7 +65,7 @@ class SweepGrid:
             unit, sentence = meaning(self.scene, name)
             numbers = np.array([float(sp.N(value, 30)) for value in values])
             found[name] = xr.Variable((name,), numbers, {"units": unit, "long_name": f"{sentence} (swept)"})
-            found[f"{name}_exact"] = text([name], list(self.spelled[name]), f"exact value of {name} as an expression")
+            found[f"{name}{EXACT}"] = text([name], list(self.spelled[name]), f"exact value of {name} as an expression")
         return found
 
 
@@ -81,7 +85,7 @@ def make_grid(
     spelled: dict[str, tuple[str, ...]] = {}
     for name, values in (over or {}).items():
         meaning(scene, name)
-        if name in RESERVED or name in {*(keys or {}), *(parameters or {})}:
+        if name in IN_SWEEPS or name in {*(keys or {}), *(parameters or {})}:
             raise InputError(f"sweep over {name}: this name is taken; it cannot be swept here")
         if not values:
             raise InputError(f"sweep over {name}: no values; give at least one")

@@ -8,6 +8,7 @@ import numpy as np
 import sympy as sp
 import xarray as xr
 
+from painleve.dataset_names import IN_REGIMES, hold_to
 from painleve.errors import InputError
 from painleve.exact.parse import exact_number, parse_expression
 from painleve.kernels.compiled import make_kernels
@@ -63,7 +64,9 @@ def map_regimes(
         coordinates[name] = number((name,), np.asarray(values, float), sentence, unit)
     title = f"Regimes of the sliding contact of {scene.name}: {scene.sentence}"
     source = provenance(scene=scene, scene_digest=make_kernels(scene).digest, seed=0, command=command)
-    return xr.Dataset(variables, coordinates, {"title": title, "kind": "regimes", **source})
+    dataset = xr.Dataset(variables, coordinates, {"title": title, "kind": "regimes", **source})
+    hold_to(IN_REGIMES, [*dataset.variables, *dataset.dims], names)
+    return dataset
 
 
 def _evaluate(

@@ -5,6 +5,8 @@ from __future__ import annotations
 import keyword
 import re
 
+from painleve.dataset_names import EXACT, IN_REGIMES, IN_SWEEPS, IN_TRAJECTORIES
+
 __all__ = ["shown", "why_no_latex", "why_no_name", "why_no_sentence", "why_no_symbol"]
 
 MAX_NAME = 32  # characters
@@ -17,19 +19,6 @@ def _words(text: str) -> frozenset[str]:
 
 # What formulas use already, and what they refuse by name.
 IN_FORMULAS = _words("sin cos tan cot asin acos atan atan2 sqrt exp log abs sinh cosh tanh pi t nan inf infinity oo")
-# Variables and dimensions of trajectories, beside which the coordinates are stored ...
-IN_TRAJECTORIES = _words(
-    "time point g gamma v_n v_t v_t1 v_t2 r_n r_t r_t1 r_t2 kinetic_energy contact_work branch change outline_x"
-    " outline_y floor"
-)
-# ... and of sweeps, beside which a parameter or a state key is stored when it is swept.
-IN_SWEEPS = _words(
-    "state eps law_branch coordinate member path friction end gamma witnessed_upper fit seconds counts outcome"
-    " outcome_reason half_jump slope u_minus u_tilde theorem_branch theorem_branch_reason verdict verdict_reason"
-    " regime slip_compliance free_acceleration"
-)
-IN_SWEEPS_PREFIXES = ("excess_", "ends_", "hausdorff_", "farthest_")
-
 _LETTER = "|".join(
     _words(
         "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi pi rho sigma tau"
@@ -58,7 +47,7 @@ def why_no_symbol(name: str, *, coordinate: bool) -> str | None:
     """Why a name cannot be that of a coordinate, or of a parameter or a key; None if it can."""
     if name in IN_FORMULAS:
         return f"{name} has a meaning in formulas already; choose another name"
-    swept = name in IN_SWEEPS or name.endswith("_exact") or name.startswith(IN_SWEEPS_PREFIXES)
+    swept = name in IN_SWEEPS | IN_REGIMES or name.endswith(EXACT)
     if swept or (coordinate and name in IN_TRAJECTORIES):
         return f"{name} is what datasets call something else; choose another name, such as {name}_0"
     if name.startswith("u_"):
