@@ -15,7 +15,7 @@ __all__ = ["free_member", "is_inside"]
 def free_member(problem: LocalProblem, eps: float, *, away: bool) -> Member:
     """v_eps itself, as far from A or as far along the jump as the ball allows, over a configuration with g < 0."""
     p = problem
-    outward = p.base[1 : 1 + p.dimension] / np.linalg.norm(p.base[1 : 1 + p.dimension])
+    outward = p.normal / np.linalg.norm(p.normal)
     direction = p.direction if p.length > 0.0 else outward
     dv = (-direction if away else direction) * (eps * (1.0 - 1e-15))
     for size in (0.5, 0.1, 1e-2, 1e-3, 1e-4):

@@ -17,6 +17,7 @@ import numpy as np
 import sympy as sp
 
 from painleve.asymptotics.space.base import space_base
+from painleve.core.rows import RowParts
 from painleve.core.space.offset import SpaceBase
 from painleve.core.space.polygon_offset import PolygonBase
 from painleve.core.taylor import Polynomials, monomial_block, polynomial_block, sparse_polynomials
@@ -82,6 +83,16 @@ class LocalProblem:
     @property
     def shape(self) -> tuple[int, ...]:
         return self.kernels.derivation.shape
+
+    @property
+    def parts(self) -> RowParts:
+        """Which rows are which part."""
+        return self.kernels.rows.parts
+
+    @property
+    def normal(self) -> np.ndarray:
+        """w_n = -grad g at q, (d,)."""
+        return self.base[self.parts.w_n]
 
     @cached_property
     def exact_multiplier(self) -> flint.arb:
@@ -199,7 +210,7 @@ def make_local_problem(limit: LimitSet) -> LocalProblem:
     base = np.array([float(jet.constant().mid()) for jet in expanded])
     if limit.critical:
         base[rows.edge(limit.edge)] = 0.0
-    base[rows.index("g")] = 0.0
+    base[rows.parts.g] = 0.0
     jump = limit.jump
     length = float(np.linalg.norm(jump))
     carried = np.zeros(state.scene.dimension)

@@ -116,22 +116,22 @@ def jump_balls(problem: LocalProblem) -> Balls:
 
 def _law(problem: LocalProblem, dq: Balls, dv: Balls) -> tuple[Balls, ContactMode]:
     """S - u- and the branch, by the definition of the law, independently of the compiled kernels."""
-    d, u = problem.dimension, base_balls(problem)[2]
+    parts, u = problem.parts, base_balls(problem)[2]
     rows = row_balls(problem, dq)
     at_base = all(x == 0 for x in dq)  # there g = 0, <u-, n> = 0 and gamma = 0 hold exactly, which no ball can show
     v = [x + y for x, y in zip(u, dv, strict=True)]
-    w_n, Y_n, a = rows[1 : 1 + d], rows[1 + d : 1 + 2 * d], rows[1 + 2 * d]
+    w_n, Y_n, a = rows[parts.w_n], rows[parts.Y_n], rows[parts.a]
     v_n = _dot(w_n, dv if at_base else v)
-    contact = at_base or not _certain(rows[0] < 0, rows[0] >= 0, "contact")
+    contact = at_base or not _certain(rows[parts.g] < 0, rows[parts.g] >= 0, "contact")
     if not contact or _certain(v_n >= 0, v_n < 0, "the sign of v_n"):
         return dv, ContactMode.FREE
     if problem.limit.state.scene.friction is None:
         return [x - y * v_n / a for x, y in zip(dv, Y_n, strict=True)], ContactMode.FRICTIONLESS
     if problem.limit.state.scene.friction_dimension == 2:
         return _law_in_space(problem, rows, v, v_n, dv, at_base)
-    H, Y_t = rows[3 + 2 * d : 3 + 3 * d], rows[3 + 3 * d : 3 + 4 * d]
-    b, C, minus, mu_plus, mu_minus = rows[3 + 4 * d :]
-    plus, v_t = rows[2 + 2 * d], _dot(H, v)
+    H, Y_t = rows[parts.H[0]], rows[parts.Y_t[0]]
+    (b,), (C,), (minus, mu_plus, mu_minus) = rows[parts.b], rows[parts.C], rows[parts.section]
+    plus, v_t = rows[parts.edge_plus], _dot(H, v)
     determinant = a * C - b * b
     r_n, r_t, branch = (b * v_t - C * v_n) / determinant, (b * v_n - a * v_t) / determinant, ContactMode.STICK
     critical = problem.critical_edge if at_base else 0
@@ -155,18 +155,18 @@ def _law(problem: LocalProblem, dq: Balls, dv: Balls) -> tuple[Balls, ContactMod
 def _law_in_space(
     problem: LocalProblem, rows: Balls, v: Balls, v_n: flint.arb, dv: Balls, at_base: bool
 ) -> tuple[Balls, ContactMode]:
-    d = problem.dimension
-    H_1, H_2, Y_1, Y_2 = (rows[3 + k * d : 3 + (k + 1) * d] for k in range(2, 6))
-    b_1, b_2, *C = rows[3 + 6 * d : 8 + 6 * d]
-    contact = Contact(a=rows[1 + 2 * d], b=(b_1, b_2), C=C, v=(v_n, _dot(H_1, v), _dot(H_2, v)))
-    critical, n = problem.critical_edge if at_base else 0, len(rows[8 + 6 * d :]) // 3
+    parts = problem.parts
+    (H_1, H_2), (Y_1, Y_2) = ([rows[part] for part in columns] for columns in (parts.H, parts.Y_t))
+    v_t = _dot(H_1, v), _dot(H_2, v)
+    contact = Contact(a=rows[parts.a], b=rows[parts.b], C=rows[parts.C], v=(v_n, *v_t))
+    critical, n = problem.critical_edge if at_base else 0, len(rows[parts.section]) // 3
     if n:
-        p, s = rows[8 + 6 * d : 8 + 6 * d + n], rows[8 + 6 * d + n :]
+        p, s = rows[parts.section][:n], rows[parts.section][n:]
         known = [flint.arb(0) if i + 1 == critical else p[i] for i in range(n)]
         r_n, r_1, r_2, branch = polygon_impulse(contact, [s[2 * i : 2 * i + 2] for i in range(n)], known)
     else:
-        r_n, r_1, r_2, branch = conic_impulse(contact, flint.arb(0) if critical else rows[2 + 2 * d])
-    moved = zip(dv, rows[1 + d : 1 + 2 * d], Y_1, Y_2, strict=True)
+        r_n, r_1, r_2, branch = conic_impulse(contact, flint.arb(0) if critical else rows[parts.edge_plus])
+    moved = zip(dv, rows[parts.Y_n], Y_1, Y_2, strict=True)
     return [x + y * r_n + z_1 * r_1 + z_2 * r_2 for x, y, z_1, z_2 in moved], branch
 
 

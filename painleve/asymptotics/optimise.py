@@ -155,7 +155,7 @@ def _configuration(search: PlaneSearch, found: FarthestMember, nudge: float, til
     dq[list(p.shape)] = found.x * (search.eps * (1.0 - 1e-15 - nudge))
     room = max(0.0, search.eps**2 * (1.0 - 4e-15) - float(dq @ dq))
     dq += p.carried_direction * np.sqrt(room) * (p.carried > 0.0)
-    inward = -p.base[1 : 1 + p.dimension]
+    inward = -p.normal
     inward = inward / np.linalg.norm(inward) * (p.carried == 0.0)
     with flint.ctx.workprec(BITS):
         tilted = zip(dq, tilt * search.eps * inward, strict=True)
@@ -166,15 +166,15 @@ def _velocity(
     search: PlaneSearch, found: FarthestMember, dq: list[flint.arb], nudge: float, tilt: float
 ) -> list[flint.arb]:
     """dv; where the tip slips, corrected so that v_n = -lam p to the last digit, however small p is."""
-    p, d = search.problem, search.problem.dimension
+    p = search.problem
     dv = [flint.arb(float(x)) for x in found.dv * (search.eps * (1.0 - 1e-15 - nudge))]
-    normal = p.base[1 : 1 + d]
+    normal = p.normal
     if found.branch not in SLIPS:
         pull = nudge * search.eps / float(np.linalg.norm(normal))
         return [x - flint.arb(float(pull * y)) for x, y in zip(dv, normal, strict=True)]
     with flint.ctx.workprec(BITS):
         rows, u = row_balls(p, dq), base_balls(p)[2]
-        w = rows[1 : 1 + d]
+        w = rows[p.parts.w_n]
         v_n = sum((x * (y + z) for x, y, z in zip(w, u, dv, strict=True)), flint.arb(0))
         lam = flint.arb(found.impulse) * (1 - flint.arb(tilt)) + flint.arb(nudge * search.eps)
         lack = -lam * rows[p.kernels.rows.index(SLIPS[found.branch])] - v_n

@@ -114,7 +114,7 @@ def rate(limit: LimitSet) -> Rate:
     found = search.best(search.branches, search.kind)
     sentence = _sentence(limit, isolated)
     if found is None or found.value <= 1.0:
-        away = -problem.direction if problem.length > 0.0 else problem.base[1 : 1 + problem.dimension]
+        away = -problem.direction if problem.length > 0.0 else problem.normal
         dq, dv = np.zeros(problem.dimension), away / np.linalg.norm(away)
         return Rate(limit=limit, C=1.0, part="free", dq=dq, dv=dv, sentence=sentence)
     return Rate(
@@ -168,7 +168,7 @@ class _FirstOrder(PlaneSearch):
 
     def _along_the_constraint(self, p: np.ndarray, branch: ContactMode) -> Sequence[PlaneChart]:
         """grad p = -kappa grad g. kappa < 0: p > 0 wherever g > 0. Else approached along the tangent alone."""
-        g = self.gradients[0]
+        g = self.gradients[self.problem.parts.g]
         if p @ g > 0.0:
             return self.within(lambda x: self.contact(x)[None, :])
         tangent = np.array([-g[1], g[0]]) / np.linalg.norm(g)

@@ -63,7 +63,7 @@ class PlaneSearch:
     def contact(self, x: np.ndarray) -> np.ndarray:
         """The largest g/eps that the offsets x leave room for."""
         room = self.problem.carried * np.sqrt(np.maximum(0.0, 1.0 - np.sum(x * x, axis=0)))
-        return self.differences(x)[0] / self.eps + room
+        return self.differences(x)[self.problem.parts.g] / self.eps + room
 
     def edge(self, branch: ContactMode, x: np.ndarray) -> np.ndarray:
         """a + s b on the branch's edge of the cone."""

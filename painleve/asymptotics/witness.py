@@ -118,8 +118,7 @@ def _witness(problem: LocalProblem, fraction: float, eps: float, member: Member,
 
 def _towards_sticking(problem: LocalProblem, eps: float, within: float) -> tuple[Member, str]:
     """At q itself, v_n -> 0-: the tip sticks, and S is as near to u_tilde as v is to u-, up to a constant."""
-    normal = problem.base[1 : 1 + problem.dimension]
-    inward = normal / np.linalg.norm(normal)
+    inward = problem.normal / np.linalg.norm(problem.normal)
     size, ratio = 0.5 * eps, SPACE_STEP if _in_space(problem) else STEP
     while size > 0.0:
         member = make_member(problem, _zeros(problem), [flint.arb(float(-size * x)) for x in inward])
@@ -175,8 +174,8 @@ def _derivatives(problem: LocalProblem) -> tuple[np.ndarray, np.ndarray, np.ndar
     """Gradient and Hessian of the critical edge's compliance and of g, in all coordinates."""
     rows = problem.kernels.rows
     grad_p, form_p = _second_order(problem, rows.edge(problem.limit.edge))
-    _, form_g = _second_order(problem, rows.index("g"))
-    return grad_p, form_p, -problem.base[1 : 1 + problem.dimension], form_g
+    _, form_g = _second_order(problem, rows.parts.g)
+    return grad_p, form_p, -problem.normal, form_g
 
 
 def _second_order(problem: LocalProblem, row: int) -> tuple[np.ndarray, np.ndarray]:
@@ -196,19 +195,19 @@ def _second_order(problem: LocalProblem, row: int) -> tuple[np.ndarray, np.ndarr
 
 def _onto_constraint(problem: LocalProblem, dq: list[flint.arb], size: float) -> list[flint.arb]:
     """Newton steps along grad g onto a slight penetration, g = 1e-9 size^2: gamma changes by no more than that."""
-    grad_g = -problem.base[1 : 1 + problem.dimension]
+    grad_g = -problem.normal
     squared = float(grad_g @ grad_g)
     with flint.ctx.workprec(BITS):
         wanted = flint.arb(1e-9) * flint.arb(float(size)) ** 2
         for _ in range(4):
-            lack = (wanted - row_balls(problem, dq)[0]) / squared
+            lack = (wanted - row_balls(problem, dq)[problem.parts.g]) / squared
             dq = [flint.arb((x + lack * float(y)).mid()) for x, y in zip(dq, grad_g, strict=True)]
     return dq
 
 
 def _admits_slip(problem: LocalProblem, dq: list[flint.arb]) -> bool:
     rows = row_balls(problem, dq)
-    return bool(rows[0] >= 0) and bool(rows[problem.kernels.rows.edge(problem.limit.edge)] > 0)
+    return bool(rows[problem.parts.g] >= 0) and bool(rows[problem.kernels.rows.edge(problem.limit.edge)] > 0)
 
 
 def _inside(x: list[flint.arb], eps: float) -> bool:
@@ -218,10 +217,10 @@ def _inside(x: list[flint.arb], eps: float) -> bool:
 
 def _slipping_velocity(problem: LocalProblem, dq: list[flint.arb], fraction: float) -> list[flint.arb]:
     """The least dv with v_n = -fraction lambda_tilde (a + s b)(q_eps)."""
-    d, edge = problem.dimension, problem.kernels.rows.edge(problem.limit.edge)
+    edge = problem.kernels.rows.edge(problem.limit.edge)
     with flint.ctx.workprec(BITS):
         rows, (_, _, u), impulse = row_balls(problem, dq), base_balls(problem), problem.exact_multiplier
-        w_n = rows[1 : 1 + d]
+        w_n = rows[problem.parts.w_n]
         v_n = sum((x * y for x, y in zip(w_n, u, strict=True)), flint.arb(0))
         excess = v_n + flint.arb(float(fraction)) * impulse * rows[edge]
         squared = sum((x * x for x in w_n), flint.arb(0))

@@ -16,6 +16,7 @@ from painleve._jit import jit
 from painleve.core.farthest import complete_frame, dot, farthest
 from painleve.core.law import FRICTIONLESS, SLIP_PLUS, STICK
 from painleve.core.reduce import PAIR, POINT
+from painleve.core.rows import row_layout, segment_rows
 
 REACH = 3  # instead of a distance: how far S comes back from u_tilde towards u-
 EDGES = 3  # half-spaces at most: v_n <= 0 and the two edges of the cone
@@ -85,30 +86,37 @@ def branch_excesses(
 
 
 @jit
+def _columns(row, at, d):
+    """w_n, M^-1 w_n, H and M^-1 H, (d,) each."""
+    return row[at.w_n : at.w_n + d], row[at.Y_n : at.Y_n + d], row[at.H : at.H + d], row[at.Y_t : at.Y_t + d]
+
+
+@jit
 def _stick(row, change, eps, u, impulse, multiplier, A, c, normals, offsets):
     """S - (u- or, after a jump, u_tilde) = eps (A y + c) where the tip sticks; returns how many half-spaces."""
     d = u.size
-    w, Y_n, a, plus = row[1 : 1 + d], row[1 + d : 1 + 2 * d], row[1 + 2 * d], row[2 + 2 * d]
-    rest, tail = 3 + 2 * d, 3 + 4 * d
-    H, Y_t = row[rest : rest + d], row[rest + d : tail]
-    b, C, minus, mu_plus, mu_minus = row[tail], row[tail + 1], row[tail + 2], row[tail + 3], row[tail + 4]
+    at = row_layout(d, 1)
+    own = segment_rows(at)
+    w, Y_n, H, Y_t = _columns(row, at, d)
+    a, b, C, plus, minus = row[at.a], row[at.b], row[at.C], row[at.edge_plus], row[own.edge_minus]
     det, (base_n, base_t) = a * C - b * b, (impulse[0], impulse[1])
-    k_n = dot(change[1 : 1 + d], u)
-    lack_n = k_n + change[1 + 2 * d] * base_n + change[tail] * base_t
-    lack_t = dot(change[rest : rest + d], u) + change[tail] * base_n + change[tail + 1] * base_t
+    dw, dY_n, dH, dY_t = _columns(change, at, d)
+    k_n = dot(dw, u)
+    lack_n = k_n + change[at.a] * base_n + change[at.b] * base_t
+    lack_t = dot(dH, u) + change[at.b] * base_n + change[at.C] * base_t
     e_n, e_t = (b * lack_t - C * lack_n) / det, (b * lack_n - a * lack_t) / det
     E_n, E_t = (b * H - C * w) / det, (b * w - a * H) / det
     jumps = multiplier > 0.0
     for j in range(d):
         c[j] = Y_n[j] * e_n + Y_t[j] * e_t
         if jumps:
-            c[j] += change[1 + d + j] * base_n + change[rest + d + j] * base_t
+            c[j] += dY_n[j] * base_n + dY_t[j] * base_t
         else:
             c[j] += (Y_n[j] * base_n + Y_t[j] * base_t) / eps
         for k in range(d):
             A[j, k] = Y_n[j] * E_n[k] + Y_t[j] * E_t[k] + (1.0 if j == k else 0.0)
     count = _half_space(w, -k_n, normals, offsets, 0)
-    for sense, edge, s in ((1.0, plus, mu_plus), (-1.0, minus, -mu_minus)):
+    for sense, edge, s in ((1.0, plus, row[own.mu_plus]), (-1.0, minus, -row[own.mu_minus])):
         if edge > 0.0 and count >= 0:
             least = sense * (base_t * (edge / eps) + edge * e_t + s * k_n)
             count = _half_space(sense * (edge * E_t + s * w), -least, normals, offsets, count)
@@ -118,7 +126,8 @@ def _stick(row, change, eps, u, impulse, multiplier, A, c, normals, offsets):
 @jit
 def _frictionless(row, change, u, A, c, normals, offsets):
     d = u.size
-    w, Y_n, a, k_n = row[1 : 1 + d], row[1 + d : 1 + 2 * d], row[1 + 2 * d], dot(change[1 : 1 + d], u)
+    at = row_layout(d, 0)
+    w, Y_n, a, k_n = row[at.w_n : at.Y_n], row[at.Y_n : at.a], row[at.a], dot(change[at.w_n : at.Y_n], u)
     for j in range(d):
         c[j] = -Y_n[j] * k_n / a
         for k in range(d):
@@ -134,18 +143,20 @@ def _slip(sense, row, change, share, eps, u, impulse, multiplier, critical, c, n
     edge, and how many half-spaces; -1 where the edge cannot lift the tip or always sticks.
     """
     d = u.size
-    w, Y_n, a = row[1 : 1 + d], row[1 + d : 1 + 2 * d], row[1 + 2 * d]
-    rest, tail = 3 + 2 * d, 3 + 4 * d
-    H, Y_t, b, C = row[rest : rest + d], row[rest + d : tail], row[tail], row[tail + 1]
-    edge = row[2 + 2 * d] if sense == 1 else row[tail + 2]
-    s, ds = (row[tail + 3], change[tail + 3]) if sense == 1 else (-row[tail + 4], -change[tail + 4])
+    at = row_layout(d, 1)
+    own = segment_rows(at)
+    w, Y_n, H, Y_t = _columns(row, at, d)
+    dw, dY_n, dH, dY_t = _columns(change, at, d)
+    a, b, C = row[at.a], row[at.b], row[at.C]
+    edge = row[at.edge_plus] if sense == 1 else row[own.edge_minus]
+    s, ds = (row[own.mu_plus], change[own.mu_plus]) if sense == 1 else (-row[own.mu_minus], -change[own.mu_minus])
     det, size = a * C - b * b, math.sqrt(dot(w, w))
     frame = np.zeros((d, d))
     frame[0] = w / size
     start, basis = np.zeros(d), np.zeros((d, d - 1))
-    k_n = dot(change[1 : 1 + d], u)
-    lack_n = k_n + change[1 + 2 * d] * impulse[0] + change[tail] * impulse[1]
-    lack_t = dot(change[rest : rest + d], u) + change[tail] * impulse[0] + change[tail + 1] * impulse[1]
+    k_n = dot(dw, u)
+    lack_n = k_n + change[at.a] * impulse[0] + change[at.b] * impulse[1]
+    lack_t = dot(dH, u) + change[at.b] * impulse[0] + change[at.C] * impulse[1]
     e_t, E_t = (b * lack_n - a * lack_t) / det, (b * w - a * H) / det
     # It slips while |s| lam < sense * (the sticking impulse's friction). On the critical edge both are |s| multiplier
     # at the base, and `drive` is what is left of the difference; elsewhere lam itself is compared.
@@ -166,7 +177,7 @@ def _slip(sense, row, change, share, eps, u, impulse, multiplier, critical, c, n
     for j in range(d):
         c[j] = start[j]
         if critical:  # Y (1, s) at the base points along the jump
-            c[j] += lam * (change[1 + d + j] + s * change[rest + d + j] + ds * (Y_t[j] - eps * change[rest + d + j]))
+            c[j] += lam * (dY_n[j] + s * dY_t[j] + ds * (Y_t[j] - eps * dY_t[j]))
         else:
             c[j] += lam / eps * (Y_n[j] + s * Y_t[j])
     normal = np.empty(d - 1)

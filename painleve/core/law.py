@@ -7,6 +7,7 @@ line is a parabola with its least value at the sticking impulse, so S is a clamp
 
 from painleve._jit import jit
 from painleve.core.codes import ContactMode
+from painleve.core.rows import row_layout, segment_rows
 
 FREE, STICK, SLIP_PLUS, SLIP_MINUS = (
     int(b) for b in (ContactMode.FREE, ContactMode.STICK, ContactMode.SLIP_PLUS, ContactMode.SLIP_MINUS)
@@ -50,27 +51,34 @@ def planar_impulse(a, b, C, edge_plus, edge_minus, mu_plus, mu_minus, v_n, v_t):
 
 @jit
 def law_from_rows(rows, dimension, planar, v, result):
-    """S(q, v) into `result` from the scene's rows at q (layout: painleve.kernels.rows); returns the branch."""
-    d = dimension
+    """S(q, v) into `result` from the scene's rows at q (painleve.core.rows); returns the branch."""
+    at = row_layout(dimension, 1 if planar else 0)
     v_n = 0.0
-    for j in range(d):
-        v_n += rows[1 + j] * v[j]
+    for j in range(dimension):
+        v_n += rows[at.w_n + j] * v[j]
         result[j] = v[j]
-    if rows[0] < 0.0 or v_n >= 0.0:
+    if rows[at.g] < 0.0 or v_n >= 0.0:
         return FREE
-    a = rows[1 + 2 * d]
+    a = rows[at.a]
     if not planar:
-        for j in range(d):
-            result[j] -= rows[1 + d + j] * v_n / a
+        for j in range(dimension):
+            result[j] -= rows[at.Y_n + j] * v_n / a
         return FRICTIONLESS
-    rest = 3 + 2 * d
     v_t = 0.0
-    for j in range(d):
-        v_t += rows[rest + j] * v[j]
-    tail = rest + 2 * d
+    for j in range(dimension):
+        v_t += rows[at.H + j] * v[j]
+    own = segment_rows(at)
     r_n, r_t, branch = planar_impulse(
-        a, rows[tail], rows[tail + 1], rows[2 + 2 * d], rows[tail + 2], rows[tail + 3], rows[tail + 4], v_n, v_t
+        a,
+        rows[at.b],
+        rows[at.C],
+        rows[at.edge_plus],
+        rows[own.edge_minus],
+        rows[own.mu_plus],
+        rows[own.mu_minus],
+        v_n,
+        v_t,
     )
-    for j in range(d):
-        result[j] += rows[1 + d + j] * r_n + rows[rest + d + j] * r_t
+    for j in range(dimension):
+        result[j] += rows[at.Y_n + j] * r_n + rows[at.Y_t + j] * r_t
     return branch

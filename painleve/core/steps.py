@@ -1,6 +1,6 @@
 """What the compiled schemes share: the contact problem of one step, and how large a velocity jump is.
 
-A tuple `rows` (layout: painleve.kernels.rows) is the scene at the configuration where a scheme takes its law. Tuples
+A tuple `rows` (painleve.core.rows) is the scene at the configuration where a scheme takes its law. Tuples
 live in registers: passing arrays between the functions of a step costs ten times the step.
 All fixed-step schemes solve the same problem, with a bias c that is zero for the paper's law:
 
@@ -17,6 +17,7 @@ from painleve._jit import jit
 from painleve.core.codes import ContactMode
 from painleve.core.law import planar_impulse, stick_impulse
 from painleve.core.motion_codes import Change
+from painleve.core.rows import row_layout, segment_rows
 
 FREE, STICK = int(ContactMode.FREE), int(ContactMode.STICK)
 FRICTIONLESS = int(ContactMode.FRICTIONLESS)
@@ -31,13 +32,13 @@ APPROACH_FACTOR = 10.0
 @jit
 def contact_velocity(rows, dimension, planar, v):
     """(v_n, v_t) = W^T v; v_t is 0 without friction."""
+    at = row_layout(dimension, 1)
     v_n, v_t = 0.0, 0.0
     for j in range(dimension):
-        v_n += rows[1 + j] * v[j]
+        v_n += rows[at.w_n + j] * v[j]
     if planar:
-        first = 3 + 2 * dimension
         for j in range(dimension):
-            v_t += rows[first + j] * v[j]
+            v_t += rows[at.H + j] * v[j]
     return v_n, v_t
 
 
@@ -46,18 +47,19 @@ def contact_problem(rows, dimension, planar, v_n, v_t, bias):
     """(r_n, r_t, branch) of the problem above, for a configuration in contact."""
     if v_n + bias >= 0.0:
         return 0.0, 0.0, FREE
-    a = rows[1 + 2 * dimension]
+    at = row_layout(dimension, 1)
+    a = rows[at.a]
     if not planar:
         return -(v_n + bias) / a, 0.0, FRICTIONLESS
-    tail = 3 + 4 * dimension
+    own = segment_rows(at)
     return planar_impulse(
         a,
-        rows[tail],
-        rows[tail + 1],
-        rows[2 + 2 * dimension],
-        rows[tail + 2],
-        rows[tail + 3],
-        rows[tail + 4],
+        rows[at.b],
+        rows[at.C],
+        rows[at.edge_plus],
+        rows[own.edge_minus],
+        rows[own.mu_plus],
+        rows[own.mu_minus],
         v_n + bias,
         v_t,
     )
@@ -69,15 +71,17 @@ def solutions(rows, dimension, planar, v_n, v_t, bias):
     gap_rate = v_n + bias
     if not planar or gap_rate < 0.0:
         return 1
-    tail = 3 + 4 * dimension
-    a, b, C = rows[1 + 2 * dimension], rows[tail], rows[tail + 1]
+    at = row_layout(dimension, 1)
+    own = segment_rows(at)
+    a, b, C = rows[at.a], rows[at.b], rows[at.C]
+    mu_plus, mu_minus = rows[own.mu_plus], rows[own.mu_minus]
     count = 1
     stick_n, stick_t = stick_impulse(a, b, C, gap_rate, v_t)
-    if stick_n > 0.0 and -rows[tail + 4] * stick_n <= stick_t <= rows[tail + 3] * stick_n:
+    if stick_n > 0.0 and -mu_minus * stick_n <= stick_t <= mu_plus * stick_n:
         count += 1
     for side in range(2):
-        s = rows[tail + 3] if side == 0 else -rows[tail + 4]
-        edge = rows[2 + 2 * dimension] if side == 0 else rows[tail + 2]
+        s = mu_plus if side == 0 else -mu_minus
+        edge = rows[at.edge_plus] if side == 0 else rows[own.edge_minus]
         if edge < 0.0 < gap_rate:
             r_n = -gap_rate / edge
             if (v_t + (b + C * s) * r_n) * s < 0.0:
@@ -108,11 +112,11 @@ def free_change(h, a, M, acceleration, drift_n, dimension):
 @jit
 def jump_size(rows, dimension, planar, r_n, r_t):
     """The kinetic norm of M^-1 W r: how far the contact moved the velocity."""
-    a = rows[1 + 2 * dimension]
+    at = row_layout(dimension, 1)
+    a = rows[at.a]
     if not planar:
         return math.sqrt(a) * r_n
-    tail = 3 + 4 * dimension
-    return math.sqrt(max(0.0, a * r_n * r_n + 2.0 * rows[tail] * r_n * r_t + rows[tail + 1] * r_t * r_t))
+    return math.sqrt(max(0.0, a * r_n * r_n + 2.0 * rows[at.b] * r_n * r_t + rows[at.C] * r_t * r_t))
 
 
 @jit
@@ -149,10 +153,11 @@ def kind_of_change(rows, dimension, planar, v_n, v_t, r_n, r_t, branch, free, si
 
     free: the free change of this step; since: steps since the last contact, this one included.
     """
-    if not is_tangential(v_n, rows[1 + 2 * dimension], free):
+    at = row_layout(dimension, 1)
+    if not is_tangential(v_n, rows[at.a], free):
         return FRICTIONAL_IMPACT if planar else IMPACT
     if not planar:
         return ORDINARY
-    edge = rows[2 + 2 * dimension] if v_t < 0.0 else rows[5 + 4 * dimension]
+    edge = rows[at.edge_plus] if v_t < 0.0 else rows[segment_rows(at).edge_minus]
     size = jump_size(rows, dimension, planar, r_n, r_t)
     return JUMP_WITHOUT_COLLISION if is_jump(size, free * since, speed, edge, branch == STICK) else ORDINARY

@@ -1,35 +1,30 @@
-"""The functions of q that the law needs, in one fixed order: the rows of every table and block.
-
-    g, w_n (d), Y_n (d), a, edge_plus                                  without friction, and in the plane also
-    H (d), Y_t (d), b, C, edge_minus, mu_plus, mu_minus                (edge_plus is a without friction);
-    in space g, w_n (d), Y_n (d), a, edge_plus, and
-    H_1 (d), H_2 (d), Y_1 (d), Y_2 (d), b_1, b_2, C_11, C_12, C_22     and for a polygon of n vertices
-    p_1 ... p_n, s_1_1, s_2_1 ... s_1_n, s_2_n                         (p_i = a + b.s_i; edge_plus is a).
-
-In space a disc and an ellipse are handed over as the unit disc: with their section E times that disc (E is
-painleve.mechanics.friction's `map`) H stands for H E, Y for Y E, b for E^T b and C for E^T C E. edge_plus is then
-a - |b|, an expression of its own: its expansion has no cancellation where it vanishes.
-"""
+"""A scene's rows as expressions, in the order of painleve.core.rows, and the name of each."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import sympy as sp
 
+from painleve.core.rows import RowLayout, RowParts, row_parts
 from painleve.mechanics.derive import Derivation
 from painleve.mechanics.friction import Polygon, Segment
 
 __all__ = ["Rows", "rows_of"]
 
+Entries: TypeAlias = list[tuple[str, sp.Expr]]
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Rows:
-    """Names and expressions of a scene's rows; `varying` are those that depend on a shape coordinate."""
+    """Names and expressions of a scene's rows, and which are which part; `varying` are those that depend on a shape
+    coordinate."""
 
     names: tuple[str, ...]
     expressions: tuple[sp.Expr, ...]
+    parts: RowParts
     varying: tuple[int, ...]
 
     def index(self, name: str) -> int:
@@ -46,31 +41,62 @@ def rows_of(derivation: Derivation) -> Rows:
     """The rows of a scene in their fixed order."""
     d, scene = derivation, derivation.scene
     axes = [c.name for c in scene.coordinates]
-    table: list[tuple[str, sp.Expr]] = [("g", scene.constraint)]
-    table += [(f"w_{x}", e) for x, e in zip(axes, d.normal, strict=True)]
-    table += [(f"Yn_{x}", e) for x, e in zip(axes, d.normal_response, strict=True)]
-    table += [("a", d.a), ("edge_plus", d.a if isinstance(scene.friction, Polygon) else d.edge_plus)]
-    if isinstance(scene.friction, Segment):
-        table += [(f"H_{x}", e) for x, e in zip(axes, scene.tangents, strict=True)]
-        table += [(f"Yt_{x}", e) for x, e in zip(axes, d.tangent_response, strict=True)]
-        table += [("b", d.b), ("C", d.C), ("edge_minus", d.edge_minus)]
-        table += [("mu_plus", scene.friction.plus), ("mu_minus", scene.friction.minus)]
-    elif scene.friction is not None:
-        table += _space(d, axes)
+    friction, k = scene.friction, scene.friction_dimension
+    parts = _common(d, axes)
+    if isinstance(friction, Segment):
+        parts |= _segment(d, axes, friction)
+    elif friction is not None:
+        parts |= _space(d, axes)
+    table = [entry for part in RowLayout._fields for entry in parts.get(part, [])]
     shape = {scene.q[i] for i in d.shape}
-    varying = tuple(i for i, (_, e) in enumerate(table) if e.free_symbols & shape)
-    return Rows(names=tuple(n for n, _ in table), expressions=tuple(e for _, e in table), varying=varying)
+    return Rows(
+        names=tuple(name for name, _ in table),
+        expressions=tuple(expression for _, expression in table),
+        parts=row_parts(scene.dimension, k, len(parts.get("section", []))),
+        varying=tuple(i for i, (_, expression) in enumerate(table) if expression.free_symbols & shape),
+    )
 
 
-def _space(d: Derivation, axes: Sequence[str]) -> Iterator[tuple[str, sp.Expr]]:
+def _common(d: Derivation, axes: Sequence[str]) -> dict[str, Entries]:
+    polygon = isinstance(d.scene.friction, Polygon)
+    return {
+        "g": [("g", d.scene.constraint)],
+        "w_n": _by_axis("w", axes, d.normal),
+        "Y_n": _by_axis("Yn", axes, d.normal_response),
+        "a": [("a", d.a)],
+        "edge_plus": [("edge_plus", d.a if polygon else d.edge_plus)],
+    }
+
+
+def _segment(d: Derivation, axes: Sequence[str], friction: Segment) -> dict[str, Entries]:
+    return {
+        "H": _by_axis("H", axes, d.scene.tangents),
+        "Y_t": _by_axis("Yt", axes, d.tangent_response),
+        "b": [("b", d.couplings[0])],
+        "C": [("C", d.compliance[0])],
+        "section": [("edge_minus", d.edge_minus), ("mu_plus", friction.plus), ("mu_minus", friction.minus)],
+    }
+
+
+def _space(d: Derivation, axes: Sequence[str]) -> dict[str, Entries]:
     friction = d.scene.friction
     E = sp.eye(2) if isinstance(friction, Polygon) else friction.map  # type: ignore[union-attr]
-    for letter, columns in (("H", d.scene.tangents * E), ("Y", d.tangent_response * E)):
-        for k in range(2):
-            yield from ((f"{letter}{k + 1}_{x}", e) for x, e in zip(axes, columns[:, k], strict=True))
+    H, Y = d.scene.tangents * E, d.tangent_response * E
     b, C = E.T * d.couplings, E.T * d.compliance * E
-    yield from (("b_1", b[0]), ("b_2", b[1]), ("C_11", C[0, 0]), ("C_12", C[0, 1]), ("C_22", C[1, 1]))
-    if isinstance(friction, Polygon):
-        yield from ((f"p_{i + 1}", d.edge_compliance(i + 1)) for i in range(len(friction.vertices)))
-        for i, vertex in enumerate(friction.vertices):
-            yield from ((f"s_{k + 1}_{i + 1}", s) for k, s in enumerate(vertex))
+    return {
+        "H": [*_by_axis("H1", axes, H[:, 0]), *_by_axis("H2", axes, H[:, 1])],
+        "Y_t": [*_by_axis("Y1", axes, Y[:, 0]), *_by_axis("Y2", axes, Y[:, 1])],
+        "b": [("b_1", b[0]), ("b_2", b[1])],
+        "C": [("C_11", C[0, 0]), ("C_12", C[0, 1]), ("C_22", C[1, 1])],
+        "section": list(_polygon(d, friction)) if isinstance(friction, Polygon) else [],
+    }
+
+
+def _polygon(d: Derivation, friction: Polygon) -> Iterator[tuple[str, sp.Expr]]:
+    yield from ((f"p_{i + 1}", d.edge_compliance(i + 1)) for i in range(len(friction.vertices)))
+    for i, vertex in enumerate(friction.vertices):
+        yield from ((f"s_{k + 1}_{i + 1}", s) for k, s in enumerate(vertex))
+
+
+def _by_axis(letter: str, axes: Sequence[str], column: sp.MatrixBase) -> Entries:
+    return [(f"{letter}_{x}", e) for x, e in zip(axes, column, strict=True)]

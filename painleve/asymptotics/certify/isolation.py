@@ -89,7 +89,7 @@ def _with_upper(problem: LocalProblem, members: Sequence[Member], lower: float) 
 
 def _free_along(problem: LocalProblem, eps: float) -> tuple[np.ndarray, np.ndarray]:
     """(dq, dv) of the free member that is farthest along A."""
-    grad_g = -problem.base[1 : 1 + problem.dimension]
+    grad_g = -problem.normal
     return -0.1 * eps * grad_g / np.linalg.norm(grad_g), eps * (1.0 - 1e-15) * problem.direction
 
 

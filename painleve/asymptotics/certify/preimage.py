@@ -19,11 +19,11 @@ Balls = list[flint.arb]
 
 def free_member(problem: LocalProblem, eps: float) -> Member:
     """A member without contact at the distance eps from A: v_eps - u- is orthogonal to A."""
-    grad_g = -problem.base[1 : 1 + problem.dimension]
+    grad_g = -problem.normal
     across = np.linalg.svd(problem.direction[None, :])[2][-1]
     for depth in (0.5, 0.1, 0.01):
         dq = -depth * eps * grad_g / np.linalg.norm(grad_g)
-        if row_balls(problem, [flint.arb(float(x)) for x in dq])[0] < 0:
+        if row_balls(problem, [flint.arb(float(x)) for x in dq])[problem.parts.g] < 0:
             return make_member(problem, dq, eps * (1.0 - 1e-15) * across)
     # Where the ball is so large that no such step leaves contact, u- itself is a member.
     return make_member(problem, np.zeros(problem.dimension), np.zeros(problem.dimension))
@@ -34,7 +34,7 @@ def candidate_member(problem: LocalProblem, eps: float, candidate: Candidate) ->
     for shrink in SHRINK:
         dq = _configuration(problem, eps, candidate, shrink)
         dv = _velocity(problem, eps, candidate, dq, shrink)
-        if not (_inside(dq, eps) and _inside(dv, eps) and row_balls(problem, dq)[0] >= 0):
+        if not (_inside(dq, eps) and _inside(dv, eps) and row_balls(problem, dq)[problem.parts.g] >= 0):
             continue
         try:
             member = make_member(problem, dq, dv)
@@ -58,14 +58,14 @@ def _configuration(problem: LocalProblem, eps: float, candidate: Candidate, shri
 
 def _into_contact(problem: LocalProblem, dq: Balls, eps: float) -> Balls:
     """Newton steps along grad g, where g < 0 by a little: onto a penetration that p cannot tell from none."""
-    grad_g = -problem.base[1 : 1 + problem.dimension]
+    grad_g = -problem.normal
     squared = float(grad_g @ grad_g)
-    if row_balls(problem, dq)[0] >= 0:
+    if row_balls(problem, dq)[problem.parts.g] >= 0:
         return dq
     with flint.ctx.workprec(BITS):
         wanted = flint.arb(1e-9) * flint.arb(eps) ** 2
         for _ in range(4):
-            lack = (wanted - row_balls(problem, dq)[0]) / squared
+            lack = (wanted - row_balls(problem, dq)[problem.parts.g]) / squared
             dq = [flint.arb((x + lack * float(y)).mid()) for x, y in zip(dq, grad_g, strict=True)]
     return dq
 
@@ -73,7 +73,7 @@ def _into_contact(problem: LocalProblem, dq: Balls, eps: float) -> Balls:
 def _velocity(problem: LocalProblem, eps: float, candidate: Candidate, dq: Balls, shrink: float) -> Balls:
     """v_eps - u-: with v_n = -Lambda p for a slip whose impulse is given, else with v_n a little below zero."""
     piece = candidate.piece
-    w_n = row_balls(problem, dq)[1 : 1 + problem.dimension]
+    w_n = row_balls(problem, dq)[problem.parts.w_n]
     with flint.ctx.workprec(BITS):
         dv = [flint.arb(float(eps * (1.0 - shrink) * x)) for x in candidate.w]
         v = [x + y for x, y in zip(dv, base_balls(problem)[2], strict=True)]

@@ -26,7 +26,7 @@ class SpaceBall:
         self.problem, self.eps, self.kind, self.expansion = problem, eps, kind, expansion
         self.shape, self.dimension = len(problem.shape), problem.dimension
         self.places = self.shape + (problem.carried > 0.0)  # rows of x
-        self.normal = problem.base[1 : 1 + self.dimension] / np.linalg.norm(problem.base[1 : 1 + self.dimension])
+        self.normal = problem.normal / np.linalg.norm(problem.normal)
         self.evaluations, self.counts = 0, {"free": 0, "stick": 0, "slip": 0}
 
     def rows(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -37,16 +37,16 @@ class SpaceBall:
     def contact(self, x: np.ndarray, changes: np.ndarray) -> np.ndarray:
         """g/eps."""
         room = self.problem.carried * x[self.shape] if self.places > self.shape else 0.0
-        return changes[0] / self.eps + room
+        return changes[self.problem.parts.g] / self.eps + room
 
     def approach(self, dv: np.ndarray, rows: np.ndarray, changes: np.ndarray) -> np.ndarray:
         """-v_n/eps."""
-        d = self.dimension
-        return -np.sum(rows[1 : 1 + d] * dv, axis=0) - self.problem.u @ changes[1 : 1 + d] / self.eps
+        w = self.problem.parts.w_n
+        return -np.sum(rows[w] * dv, axis=0) - self.problem.u @ changes[w] / self.eps
 
     def approaching(self, dv: np.ndarray, rows: np.ndarray, changes: np.ndarray, wanted: np.ndarray) -> np.ndarray:
         """dv moved along the normal so that -v_n/eps is as wanted."""
-        w = rows[1 : 1 + self.dimension]
+        w = rows[self.problem.parts.w_n]
         lack = wanted - self.approach(dv, rows, changes)
         return dv - w * (lack / np.sum(w * w, axis=0))
 

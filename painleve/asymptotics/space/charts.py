@@ -20,6 +20,7 @@ import numpy as np
 
 from painleve.asymptotics.space.ball import SpaceBall
 from painleve.core.codes import ContactMode
+from painleve.core.rows import RowParts
 from painleve.core.space.polygon_offset import PolygonBase
 from painleve.mechanics.friction import Polygon
 
@@ -171,7 +172,8 @@ class Sticking:
         x, dv = self.place(z)
         rows, changes = self.ball.rows(x)
         conditions = self.ball.conditions(x, dv, rows, changes)
-        G, dG = _delassus(rows), _delassus(changes)
+        parts = self.ball.problem.parts
+        G, dG = _delassus(rows, parts), _delassus(changes, parts)
         change = self._impulse_change(dv, rows, changes, G, dG)
         conditions.append(self._in_cone(rows, changes, change, conditions[3]))
         return self._distance(dv, rows, changes, change), np.array(conditions)
@@ -180,18 +182,17 @@ class Sticking:
         self, dv: np.ndarray, rows: np.ndarray, changes: np.ndarray, G: np.ndarray, dG: np.ndarray
     ) -> np.ndarray:
         """(3, n): how the sticking impulse differs from the base state's, over eps."""
-        d, u = self.ball.dimension, self.ball.problem.u
+        parts, u = self.ball.problem.parts, self.ball.problem.u
         moved = []
-        for first in (1, 3 + 2 * d, 3 + 3 * d):
-            block = slice(first, first + d)
+        for block in (parts.w_n, *parts.H):
             moved.append(np.sum(rows[block] * dv, axis=0) + u @ changes[block] / self.ball.eps)
         lack = np.array(moved).T + dG @ self.stick / self.ball.eps
         return np.linalg.solve(G, -lack[:, :, None])[:, :, 0].T
 
     def _in_cone(self, rows: np.ndarray, changes: np.ndarray, change: np.ndarray, approach: np.ndarray) -> np.ndarray:
         """nu - p |r_t| - (|b||r_t| + b.r_t), over eps, without cancellation where r_t opposes b at the base."""
-        eps, d = self.ball.eps, self.ball.dimension
-        p, b, db = rows[2 + 2 * d], rows[3 + 6 * d : 5 + 6 * d], changes[3 + 6 * d : 5 + 6 * d]
+        eps, parts = self.ball.eps, self.ball.problem.parts
+        p, b, db = rows[parts.edge_plus], rows[parts.b], changes[parts.b]
         e, s = eps * change[1:], self.stick[1:, None]
         r, size = s + e, np.hypot(*b)
         length, along = np.hypot(*r), b[0] * r[0] + b[1] * r[1]
@@ -204,8 +205,7 @@ class Sticking:
     def _distance(self, dv: np.ndarray, rows: np.ndarray, changes: np.ndarray, change: np.ndarray) -> np.ndarray:
         p, d, eps = self.ball.problem, self.ball.dimension, self.ball.eps
         z, start = eps * dv, np.zeros(d)
-        for k, first in enumerate((1 + d, 3 + 4 * d, 3 + 5 * d)):
-            block = slice(first, first + d)
+        for k, block in enumerate((p.parts.Y_n, *p.parts.Y_t)):
             z = z + changes[block] * self.stick[k] + rows[block] * (eps * change[k])
             start += p.base[block] * self.stick[k]
         if not self.at_end:
@@ -235,10 +235,9 @@ def charts_of(ball: SpaceBall) -> list[SpaceChart]:
     return found
 
 
-def _delassus(rows: np.ndarray) -> np.ndarray:
+def _delassus(rows: np.ndarray, parts: RowParts) -> np.ndarray:
     """(n, 3, 3) from the rows a, b, C."""
-    d = (len(rows) - 8) // 6
-    a, (b_1, b_2, C_11, C_12, C_22) = rows[1 + 2 * d], rows[3 + 6 * d : 8 + 6 * d]
+    a, (b_1, b_2), (C_11, C_12, C_22) = rows[parts.a], rows[parts.b], rows[parts.C]
     return np.moveaxis(np.array([[a, b_1, b_2], [b_1, C_11, C_12], [b_2, C_12, C_22]]), 2, 0)
 
 

@@ -66,7 +66,7 @@ def root_rate(limit: LimitSet, isolated: bool) -> Root:
     dq = np.zeros(problem.dimension)
     dq[list(problem.shape)] = x
     dq += problem.carried_direction * np.sqrt(max(0.0, 1.0 - float(x @ x)))
-    w_n = problem.base[1 : 1 + problem.dimension]
+    w_n = problem.normal
     return Root(C=float(np.sqrt(squared)), dq=dq, dv=-(nu + search.turn @ x) * w_n / (w_n @ w_n))
 
 
@@ -74,19 +74,20 @@ class _RootSearch:
     """Numbers of the base state, and the distance as a function of the offsets."""
 
     def __init__(self, problem: LocalProblem, isolated: bool) -> None:
-        d, base, rows = problem.dimension, problem.base, problem.kernels.rows
+        base, parts = problem.base, problem.parts
         self.problem, self.isolated = problem, isolated
         gradients = problem.gradients
-        self.p, self.g = gradients[rows.index("edge_plus")], gradients[0]
-        self.w_n = base[1 : 1 + d]
-        self.turn = problem.u @ gradients[1 : 1 + d]
-        b, a = np.array([base[rows.index("b_1")], base[rows.index("b_2")]]), float(base[rows.index("a")])
-        C = np.array([[base[rows.index(f"C_{min(i, j)}{max(i, j)}")] for j in (1, 2)] for i in (1, 2)])
+        self.p, self.g = gradients[parts.edge_plus], gradients[parts.g]
+        self.w_n = problem.normal
+        self.turn = problem.u @ gradients[parts.w_n]
+        b, a = base[parts.b], float(base[parts.a])
+        C_11, C_12, C_22 = base[parts.C]
+        C = np.array([[C_11, C_12], [C_12, C_22]])
         e = b / np.linalg.norm(b)
         across = np.array([-e[1], e[0]])
         Q = C - np.outer(b, b) / a
-        Y_n = base[1 + d : 1 + 2 * d]
-        Y_t = np.stack([base[3 + 4 * d : 3 + 5 * d], base[3 + 5 * d : 3 + 6 * d]], axis=1)
+        Y_n = base[parts.Y_n]
+        Y_t = np.stack([base[part] for part in parts.Y_t], axis=1)
         self.a, self.Q_11, self.Q_12, self.jump = a, float(e @ Q @ e), float(e @ Q @ across), problem.multiplier
         self.ray, self.side = Y_n - Y_t @ e, Y_t @ across
         assert isinstance(problem.impulse, SpaceBase)

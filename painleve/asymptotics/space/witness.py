@@ -67,10 +67,10 @@ def _length(problem: LocalProblem) -> flint.arb:
 
 def _off_the_line(problem: LocalProblem, dq: Balls, reach: float) -> flint.arb:
     """Of S - v from the line through A, for all nu up to `reach` times p times the jump's impulse."""
-    d, rows, names = problem.dimension, row_balls(problem, dq), problem.kernels.rows
+    rows, names, parts = row_balls(problem, dq), problem.kernels.rows, problem.parts
     p = rows[names.edge(problem.limit.edge)]
     most = flint.arb(reach) * problem.exact_multiplier
-    Y_n, Y_1, Y_2 = rows[1 + d : 1 + 2 * d], rows[3 + 4 * d : 3 + 5 * d], rows[3 + 5 * d : 3 + 6 * d]
+    Y_n, (Y_1, Y_2) = rows[parts.Y_n], [rows[part] for part in parts.Y_t]
     friction = problem.limit.state.scene.friction
     if isinstance(friction, Polygon):
         corners = [
@@ -81,7 +81,7 @@ def _off_the_line(problem: LocalProblem, dq: Balls, reach: float) -> flint.arb:
         ray = rays[problem.limit.edge - 1]
         rest = max((most * p * _norm(rays[i]) / rows[names.edge(i + 1)] for i in others), key=lambda x: x.upper())
     else:
-        b_1, b_2 = rows[names.index("b_1")], rows[names.index("b_2")]
+        b_1, b_2 = rows[parts.b]
         size = (b_1 * b_1 + b_2 * b_2).sqrt()
         e_1, e_2 = b_1 / size, b_2 / size
         ray = _combine((Y_n, 1), (Y_1, -e_1), (Y_2, -e_2))
