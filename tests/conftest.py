@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 from collections.abc import Iterator
 
 import numpy as np
@@ -26,3 +27,15 @@ def raise_on_floating_point_errors(request: pytest.FixtureRequest) -> Iterator[N
     else:
         with np.errstate(divide="raise", over="raise", invalid="raise"):
             yield
+
+
+@pytest.fixture
+def interruptible() -> Iterator[None]:
+    """Ctrl-C is heard, by this process and those that it starts, even where the parent ignores it.
+
+    What a shell starts in the background inherits an ignored SIGINT; Python then installs no handler, and so do its
+    children. A handler, unlike a signal that is ignored, does not outlive an exec: children start with the default.
+    """
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)

@@ -24,6 +24,8 @@ from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 from painleve.store import load
 
+pytestmark = pytest.mark.usefixtures("interruptible")
+
 STEPPED = SCHEME_NAMES[:5]
 STOSS = make_state(load_scene("slender_rod"), "stoss")
 ARRAYS = ("t", "q", "u", "r", "branch", "change")
