@@ -24,6 +24,7 @@ from painleve.exact.jets import Jet, jets, monomials
 __all__ = ["Models", "TaylorModel", "expand", "make_models", "taylor_order"]
 
 NEGLIGIBLE = 1e-11  # remainders below this, relative to eps, do not show in an enclosure
+OUTWARD = 1.0 + 2.0**-40  # more than the relative rounding of a sum of as many terms as a polynomial has
 HIGHEST_ORDER = {0: 1, 1: 14, 2: 10}
 
 
@@ -195,6 +196,6 @@ def make_models(functions: Sequence[TaylorModel]) -> Models:
         powers=np.array(powers, dtype=int).reshape(len(powers), first.near.variables),
         coefficients=table,
         remainder=remainder,
-        bend=(degree * (degree - 1)) @ size,
-        size=size.sum(axis=0),
+        bend=(degree * (degree - 1)) @ size * OUTWARD,
+        size=size.sum(axis=0) * OUTWARD,
     )
