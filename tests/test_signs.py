@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import time
 from fractions import Fraction
 
+import flint
 import mpmath
 import pytest
 import sympy
@@ -12,7 +14,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from sympy import Rational, acos, asin, atan, atan2, cos, cosh, cot, exp, log, pi, root, sin, sinh, sqrt, tan, tanh
 
-from painleve.exact.signs import Sign, exact_sign
+from painleve.exact.signs import Sign, _size, exact_sign
 
 SECONDS = 30.0  # of the processor: what is unbounded takes hours, what is bounded far less on any machine
 X = sympy.Symbol("x")
@@ -119,6 +121,85 @@ def test_a_number_near_its_separation_bound_keeps_its_sign(n: int) -> None:
 )
 def test_a_number_that_is_not_zero_has_its_sign_proved(expr: sympy.Expr, sign: Sign) -> None:
     assert exact_sign(expr).sign is sign
+
+
+def power_of_unit(k: int, n: int) -> sympy.Expr:
+    """(2^(1/k) - 1)^n as a sum of k terms with huge coefficients.
+
+    A unit of its field of degree k: it is as small as its conjugates are large, (2^(1/k) + 1)^n at most.
+    """
+    coefficients = [1] + [0] * (k - 1)
+    for _ in range(n):
+        shifted = [2 * coefficients[-1], *coefficients[:-1]]
+        coefficients = [x - y for x, y in zip(shifted, coefficients, strict=True)]
+    return sympy.Add(*(c * root(2, k) ** j for j, c in enumerate(coefficients)))
+
+
+@pytest.mark.parametrize(("k", "n"), [(3, 600), (3, 3000), (4, 700), (5, 500), (7, 450)])
+def test_a_number_far_below_the_sizes_that_cancel_in_it_keeps_its_sign(k: int, n: int) -> None:
+    """More than 1024 bits below one, by the product of k - 1 conjugates and not by one of them."""
+    small = power_of_unit(k, n)
+    assert exact_sign(small).sign is Sign.POSITIVE
+    assert exact_sign(-small / 3).sign is Sign.NEGATIVE
+    assert exact_sign(small - power_of_unit(k, n + 1) - (2 - root(2, k)) * small).sign is Sign.ZERO
+
+
+@pytest.mark.parametrize("k", [2, 3, 5])
+@pytest.mark.parametrize(
+    "coefficients", [(2, 1, -2), (8, -7, 4, -1), (1024, 3, -1), (2**30, 1, -5, 2, -1), (2**12, -5)]
+)
+def test_the_size_of_a_root_bounds_all_of_its_conjugates(coefficients: tuple[int, ...], k: int) -> None:
+    """Of the root of a number with the denominator L, a power of two, times L: an algebraic integer."""
+    polynomial = sympy.Poly(coefficients, X)
+    base = sympy.CRootOf(polynomial, polynomial.count_roots() - 1)
+    size = _size(sympy.Pow(base, Rational(1, k), evaluate=False), {})
+    roots = flint.fmpz_poly(list(coefficients[::-1])).complex_roots()
+    largest = max(float(abs(value).mid()) for value, _ in roots)
+    assert 2**size.lower == coefficients[0]
+    assert size.lower + math.log2(largest) / k <= size.upper + 1e-9
+
+
+def near(value: sympy.Expr, digits: int = 420) -> Rational:
+    """Its decimals: closer to it than any of the precisions tried can tell."""
+    return Rational(str(sympy.N(value, digits)))
+
+
+@given(st.sets(st.integers(-6, 24), min_size=1, max_size=12))
+@example({2})
+@example(set(range(2, 10)))
+@settings(max_examples=40)
+def test_a_polynomial_in_an_unknown_that_vanishes_at_many_integers_is_not_taken_for_zero(places: set[int]) -> None:
+    """(e - p) (e - k) (e - l) ...: zero at all these integers, tiny at e, and not zero."""
+    e = sympy.E
+    product = sympy.Mul(e - near(e), *(e - k for k in places), evaluate=False)
+    assert exact_sign(product).sign is Sign.UNDECIDED
+
+
+@given(st.sets(st.integers(2, 12), min_size=1, max_size=6))
+@example({2})
+@settings(max_examples=30)
+def test_a_function_of_an_angle_that_vanishes_at_many_half_angle_tangents_is_not_taken_for_zero(places: set[int]):
+    """t = tan(1/2) is 2u/(1 - u^2) with u = tan(1/4), so u = 2 makes t = -4/3."""
+    t = tan(Rational(1, 2))
+    product = sympy.Mul(t - near(t), *(t - Rational(2 * u, 1 - u * u) for u in places), evaluate=False)
+    assert exact_sign(product).sign is Sign.UNDECIDED
+
+
+@pytest.mark.parametrize("n", [1, 2, 5])
+@pytest.mark.parametrize("first", [(2, 3), (2, 4), (2, 5), (2, 6), (2, 7), (2, 8), (2, 9), (3, 4)])
+def test_a_function_of_two_unknowns_that_vanishes_on_a_whole_grid_is_not_taken_for_zero(n: int, first: tuple[int, int]):
+    """a (u - i)(u - j)... + b (v - k)(v - l)...: zero on n x n integer points, tiny at u = e, v = pi by choice of b."""
+    starts = zip((sympy.E, sympy.pi), first, strict=True)
+    factors = [sympy.Mul(*(x - k for k in range(start, start + n))) for x, start in starts]
+    function = sympy.Add(factors[0], near(-factors[0] / factors[1], 460) * factors[1], evaluate=False)
+    assert exact_sign(function).sign is Sign.UNDECIDED
+
+
+@pytest.mark.parametrize("undefined", [log(sin(1) ** 2 + cos(1) ** 2 - 1), 1 / (sin(1) ** 2 + cos(1) ** 2 - 1)])
+def test_zero_times_what_is_not_defined_is_not_zero(undefined: sympy.Expr) -> None:
+    """The logarithm and the reciprocal of a hidden zero."""
+    product = sympy.Mul(undefined, sin(2) ** 2 + cos(2) ** 2 - 1, evaluate=False)
+    assert exact_sign(product).sign is Sign.UNDECIDED
 
 
 def roots_against_decimals(digits: int) -> sympy.Expr:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -10,15 +11,19 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 import xarray as xr
 
+from painleve import store
 from painleve.errors import InputError
 from painleve.store import check_schema, check_writable, flags, load, provenance, save
 
 # Awkward on purpose: signed zero, a subnormal number, infinity, NaN, and neighbours of one.
-NUMBERS = np.array([0.0, -0.0, 5e-324, -np.inf, np.nan, 1.0 + 2.0**-52])
+# The NaN has a payload: to mask a value that is marked as missing would put another NaN in its place.
+MARKED_NAN = np.array([0x7FF8_0000_0000_BEEF], np.uint64).view(np.float64)[0]
+NUMBERS = np.array([0.0, -0.0, 5e-324, -np.inf, MARKED_NAN, 1.0 + 2.0**-52])
 
 
 def make_dataset(shift: float = 0.0) -> xr.Dataset:
@@ -65,6 +70,36 @@ def test_xarray_alone_reads_numbers_units_flags_and_provenance(tmp_path: Path) -
     run = subprocess.run([sys.executable, "-c", code, str(path)], capture_output=True, text=True, check=True)
     expected = ["float64", "m/s", "not_run done failed", [0, 1, 2], "7", np.__version__]
     assert json.loads(run.stdout) == expected
+
+
+def test_no_value_of_a_variable_is_marked_as_missing(tmp_path: Path) -> None:
+    """A NaN or a code 0 is a value here; whoever reads the file masks nothing."""
+    with h5py.File(save(make_dataset(), tmp_path / "a.h5"), "r") as file:
+        for name in make_dataset().variables:
+            assert not {"_FillValue", "missing_value"} & set(file[name].attrs)
+
+
+def test_a_file_is_on_the_disk_whole_before_it_takes_its_name_and_its_name_after_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By the inode, which a rename keeps: what was flushed is the file that the name leads to."""
+    flush, move, events = os.fsync, os.replace, []
+
+    def note_flush(handle: int) -> None:
+        flush(handle)
+        events.append(("flushed", os.fstat(handle).st_ino, os.fstat(handle).st_size))
+
+    def note_move(source: Path, target: Path) -> None:
+        move(source, target)
+        events.append(("moved", os.stat(target).st_ino, os.stat(target).st_size))
+
+    monkeypatch.setattr(os, "fsync", note_flush)
+    monkeypatch.setattr(os, "replace", note_move)
+    path = save(make_dataset(), tmp_path / "a.h5")
+    inode, size = path.stat().st_ino, path.stat().st_size
+    moved = events.index(("moved", inode, size))
+    assert ("flushed", inode, size) in events[:moved]
+    assert tmp_path.stat().st_ino in [found for what, found, _ in events[moved:] if what == "flushed"]
 
 
 @pytest.mark.parametrize("failure", [OSError("no space left"), KeyboardInterrupt(), MemoryError()], ids=repr)
@@ -202,6 +237,36 @@ def test_a_foreign_dataset_is_refused_by_what_it_lacks(tmp_path: Path) -> None:
     xr.Dataset({"x": ("t", [1.0, 2.0])}).to_netcdf(path, engine="h5netcdf")
     with pytest.raises(InputError, match="variable x lacks units"):
         load(path)
+
+
+def git(folder: Path, *words: str) -> str:
+    identity = ("-c", "user.name=test", "-c", "user.email=test@example.org", "-c", "commit.gpgsign=false")
+    run = subprocess.run(["git", "-C", folder, *identity, *words], capture_output=True, text=True, check=True)
+    return run.stdout.strip()
+
+
+def test_a_checkout_that_differs_from_its_commit_is_said_to(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was computed by edited code must not be taken for the commit's; a file that git does not know is no edit."""
+
+    def recorded() -> str:
+        return provenance(scene="none", scene_digest="0", seed=0)["git_commit"]
+
+    package = tmp_path / "painleve"
+    package.mkdir()
+    monkeypatch.setattr(store, "__file__", str(package / "store.py"))
+    assert recorded() == "unknown"
+    (package / "law.py").write_text("gamma = 1\n")
+    git(tmp_path, "init", "--quiet")
+    git(tmp_path, "add", ".")
+    git(tmp_path, "commit", "--quiet", "--message", "first")
+    commit = git(tmp_path, "rev-parse", "HEAD")
+    assert recorded() == commit
+    (tmp_path / "result.h5").write_text("of no commit")
+    assert recorded() == commit
+    (package / "law.py").write_text("gamma = 2\n")
+    assert recorded() == f"{commit} with changes"
+    git(tmp_path, "add", ".")
+    assert recorded() == f"{commit} with changes"
 
 
 def test_the_commit_is_that_of_the_checkout() -> None:

@@ -254,6 +254,44 @@ def test_without_witnesses_indeterminacy_is_not_decided():
     assert "no witnesses" in verdict.reason
 
 
+@pytest.mark.parametrize("state", [*POSITIVE_BRANCHES, ISOLATED])
+@pytest.mark.parametrize(
+    ("power", "enough"), [(0.0, False), (0.1, False), (0.3, False), (0.45, False), (0.55, True), (1.0, True)]
+)
+def test_members_have_to_come_nearer_like_the_root_of_eps_at_least(state, power, enough):
+    """In the plane the theorem's rate is eps; half of it is asked for, of lower bounds and of enclosures alike."""
+    half = HALF if state == ISOLATED else 0.0
+
+    def members(e: float) -> Bounds:
+        return Bounds.between(e**power, 2 * e**power)
+
+    def known(e: float) -> Bounds:
+        return Bounds.between(max(0.0, half - 2 * e**power), half)
+
+    assert verdict_on(state, lambda e: Bounds.at_least(e**power), lambda e: Bounds.at_most(half)) is (
+        VerdictStatus.CONSISTENT if enough else VerdictStatus.UNDECIDED
+    )
+    assert verdict_on(state, members, known) is (VerdictStatus.PROVED if enough else VerdictStatus.UNDECIDED)
+    # and upper bounds that do not fall fast enough prove nothing, whatever the lower ones do
+    slow = verdict_on(state, lambda e: Bounds.between(e, 5 * e**power), known)
+    assert slow is (VerdictStatus.PROVED if enough else VerdictStatus.CONSISTENT)
+
+
+@pytest.mark.parametrize(("power", "enough"), [(0.3, False), (0.38, False), (0.45, True), (0.5, True)])
+def test_in_space_at_gamma_zero_the_rate_is_the_root_of_eps_and_less_is_asked_for(power, enough):
+    found = classification_of("spatial_rod", "critical")
+    evidence = [
+        made_up(found, e, Bounds.at_least(e**power), Bounds.unknown(), Bounds.unknown()) for e in (1e-2, 1e-3, 1e-4)
+    ]
+    assert judge(found, evidence).status is (VerdictStatus.CONSISTENT if enough else VerdictStatus.UNDECIDED)
+    paradox = classification_of("spatial_rod", "paradox")
+    elsewhere = [
+        made_up(paradox, e.eps, Bounds.at_least(e.eps**power), Bounds.unknown(), Bounds.unknown()) for e in evidence
+    ]
+    expected = VerdictStatus.CONSISTENT if power >= 0.5 else VerdictStatus.UNDECIDED
+    assert judge(paradox, elsewhere).status is expected
+
+
 def test_an_isolated_state_is_proved_by_enclosures_of_both_parts_of_its_statement_alone():
     def near_ends(e: float) -> Bounds:
         return Bounds.between(e, 2 * e)
