@@ -22,6 +22,9 @@ class Attained:
     member: Member | None = None
     point: np.ndarray | None = None
 
+    def __repr__(self) -> str:
+        return f"Attained({self.bounds})"
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Distance:
@@ -39,6 +42,11 @@ class Distance:
     evaluations: int
     ending: str
     settings: Mapping[str, object] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        state, there, back = self.limit.state, self.excess_Aeps_A.bounds, self.excess_A_Aeps.bounds
+        head = f"Distance({state.scene.name!r}, {state.label!r}, eps = {self.eps:g}, {self.method}"
+        return f"{head}: e(A_eps, A) {there}, e(A, A_eps) {back})"
 
     @property
     def hausdorff(self) -> Bounds:

@@ -17,6 +17,7 @@ from painleve.asymptotics.local import BITS, LocalProblem
 from painleve.asymptotics.space.member import Contact, conic_impulse, polygon_impulse
 from painleve.core.codes import ContactMode
 from painleve.exact.balls import ball, make_ball_function
+from painleve.sets import Bounds
 
 __all__ = ["Member", "base_balls", "distance_to_point", "jump_balls", "make_member", "row_balls"]
 
@@ -39,6 +40,10 @@ class Member:
     offset: np.ndarray
     distance: tuple[float, float]
     enclosure: tuple[flint.arb, ...]
+
+    def __repr__(self) -> str:
+        offset = ", ".join(f"{x:.6g}" for x in self.offset)
+        return f"Member({self.branch.label}, S - u- = ({offset}), dist(S, A) {Bounds.between(*self.distance)})"
 
     def as_dict(self) -> dict[str, object]:
         arrays = {"dq": self.dq.tolist(), "dv": self.dv.tolist(), "offset": self.offset.tolist()}

@@ -69,6 +69,10 @@ class Rate:
     sentence: str
     power: float = 1.0
 
+    def __repr__(self) -> str:
+        state, power = self.limit.state, "eps" if self.power == 1.0 else f"eps^{self.power:g}"
+        return f"Rate({state.scene.name!r}, {state.label!r}, {self.C:.9g} {power}, {self.part})"
+
     @cached_property
     def closed_form(self) -> sp.Expr | None:
         """C as an exact expression, where one is known and short; worked out when asked for, which takes seconds."""

@@ -43,6 +43,11 @@ class Evidence:
     ends: Distance
     witnessed: float | None
 
+    def __repr__(self) -> str:
+        there, back = self.distance.excess_Aeps_A.bounds, self.distance.excess_A_Aeps.bounds
+        witnessed = "no witnesses" if self.witnessed is None else f"by witnesses {Bounds.at_most(self.witnessed)}"
+        return f"Evidence(eps = {self.eps:g}, e(A_eps, A) {there}, e(A, A_eps) {back}, {witnessed})"
+
 
 @dataclass(frozen=True, kw_only=True)
 class Verdict:
@@ -52,6 +57,10 @@ class Verdict:
     status: VerdictStatus
     reason: str
     slope: float | None
+
+    def __repr__(self) -> str:
+        slope = "" if self.slope is None else f", slope {self.slope:.3g}"
+        return f"Verdict({self.branch.value}, {self.status.value}{slope})"
 
 
 def collect(classification: Classification, eps: float, measure: Callable[[LimitSet, float], Distance]) -> Evidence:

@@ -20,6 +20,7 @@ from painleve.asymptotics.member import Member, base_balls, distance_to_point, m
 from painleve.asymptotics.space.witness import path_bound, path_members
 from painleve.core.codes import ContactMode
 from painleve.errors import InputError
+from painleve.sets import Bounds
 from painleve.theory.limit_set import LimitSet
 
 __all__ = ["Family", "Witness", "find_family", "find_witness"]
@@ -41,6 +42,10 @@ class Witness:
     distance: tuple[float, float] | None
     reason: str
 
+    def __repr__(self) -> str:
+        found = f"distance {Bounds.between(*self.distance)}" if self.distance is not None else "none found"
+        return f"Witness(fraction = {self.fraction:g}, eps = {self.eps:g}, {found})"
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Family:
@@ -54,6 +59,9 @@ class Family:
     first: Member
     last: Member
     bound: float
+
+    def __repr__(self) -> str:
+        return f"Family(e(A, A_eps) {Bounds.at_most(self.bound)})"
 
 
 def find_witness(limit: LimitSet, fraction: float, eps: float, *, within: float) -> Witness:

@@ -53,6 +53,9 @@ class Signed:
     reason: str
     value: float
 
+    def __repr__(self) -> str:
+        return f"Signed({self.sign.value}, {self.value:.6g})"
+
 
 class _Undecidable(Exception):
     """Why no proof was attempted or found."""

@@ -44,6 +44,10 @@ class Derivation:
     carried: tuple[int, ...]
     idle: tuple[int, ...]
 
+    def __repr__(self) -> str:
+        k = self.scene.friction_dimension
+        return f"Derivation({self.scene.name!r}, d = {self.scene.dimension}, k = {k})"
+
     @property
     def b(self) -> sp.Expr | None:
         return self.couplings[0] if self.scene.friction_dimension == 1 else None

@@ -40,6 +40,9 @@ class Excess:
     attained_at: FloatArray
     nearest: FloatArray
 
+    def __repr__(self) -> str:
+        return f"Excess({self.bounds})"
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Hausdorff:
@@ -47,6 +50,9 @@ class Hausdorff:
 
     forward: Excess
     backward: Excess
+
+    def __repr__(self) -> str:
+        return f"Hausdorff(forward {self.forward.bounds}, backward {self.backward.bounds})"
 
     @property
     def bounds(self) -> Bounds:

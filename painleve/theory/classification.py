@@ -46,6 +46,10 @@ class Classification:
     neighbours: Neighbours | None
     reason: str
 
+    def __repr__(self) -> str:
+        state = self.limit.state
+        return f"Classification({state.scene.name!r}, {state.label!r}, {self.branch.value})"
+
     @property
     def statement(self) -> str:
         return STATEMENTS[self.branch]

@@ -58,6 +58,10 @@ class CriticalState:
     kind: Neighbourhood
     reason: str
 
+    def __repr__(self) -> str:
+        place, friction = (float(x.mid()) for x in (self.enclosure, self.friction_enclosure))
+        return f"CriticalState({self.status.value}, at {place:.6g}, mu_c = {friction:.6g}, {self.kind.value})"
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CriticalStates:
@@ -78,6 +82,10 @@ class CriticalStates:
     outside: tuple[arb, ...]
     changing: tuple[str, ...]
     note: str
+
+    def __repr__(self) -> str:
+        found = f"zeros of gamma: {len(self.zeros)}, extrema of mu_c: {len(self.extrema)}"
+        return f"CriticalStates({self.scene.name!r}, along {self.along!r}; {found}, unresolved: {len(self.unresolved)})"
 
     @property
     def unresolved(self) -> tuple[CriticalState, ...]:

@@ -44,6 +44,9 @@ class LimitSet:
     reason: str
     after: str = ""
 
+    def __repr__(self) -> str:
+        return f"LimitSet({self.state.scene.name!r}, {self.state.label!r}, {self.kind})"
+
     @property
     def critical(self) -> bool:
         """gamma = 0 at q, and there is a jump."""

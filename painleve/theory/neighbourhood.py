@@ -41,6 +41,9 @@ class Neighbours:
     kind: Neighbourhood
     reason: str
 
+    def __repr__(self) -> str:
+        return f"Neighbours({self.kind.value})"
+
 
 def neighbours(state: State, edge: int) -> Neighbours:
     """The kind of a state with gamma(q) = 0, attained on that edge of the cone (Derivation.edge_direction)."""

@@ -59,6 +59,9 @@ class CoulombJump:
     end_impulse: tuple[sp.Expr, ...] | None
     end: tuple[sp.Expr, ...] | None
 
+    def __repr__(self) -> str:
+        return f"CoulombJump({self.kind}{', a family' if self.end is not None else ''})"
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CoulombLimitSet:
@@ -69,6 +72,10 @@ class CoulombLimitSet:
     gamma: Signed
     jumps: tuple[CoulombJump, ...]
     reason: str
+
+    def __repr__(self) -> str:
+        jumps = ", ".join(jump.kind for jump in self.jumps)
+        return f"CoulombLimitSet({self.state.scene.name!r}, {self.state.label!r}, {self.kind}: {jumps})"
 
     @property
     def parts(self) -> tuple[sets.Points | sets.LineSegment, ...]:

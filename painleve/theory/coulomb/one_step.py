@@ -49,6 +49,10 @@ class CoulombSolution:
     family: np.ndarray | None
     family_velocities: np.ndarray | None
 
+    def __repr__(self) -> str:
+        impulse = ", ".join(f"{x:.6g}" for x in self.impulse)
+        return f"CoulombSolution({_named(self)}, impulse = ({impulse}))"
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CoulombSolutions:
@@ -58,6 +62,9 @@ class CoulombSolutions:
     gamma: Signed
     enumeration: Enumeration
     doubts: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        return f"CoulombSolutions({', '.join(map(_named, self.solutions)) or 'none found'}: {self.enumeration.value})"
 
     @property
     def sentence(self) -> str:

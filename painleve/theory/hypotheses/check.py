@@ -51,6 +51,10 @@ class HypothesesCheck:
     theorem: Applicability
     sentence: str
 
+    def __repr__(self) -> str:
+        found = ", ".join(f"{h.name} {h.status.value}" for h in self.hypotheses)
+        return f"HypothesesCheck({self.state.scene.name!r}, {self.state.label!r}, {found}: {self.theorem.value})"
+
     def __getitem__(self, name: str) -> Hypothesis:
         return next(h for h in self.hypotheses if h.name == name)
 

@@ -33,6 +33,9 @@ class Hypothesis:
     sentence: str
     place: Place | None
 
+    def __repr__(self) -> str:
+        return f"Hypothesis({self.name}, {self.status.value})"
+
     def as_dict(self) -> dict[str, object]:
         place = None if self.place is None else self.place.as_dict()
         return {"asks": self.asks, "status": self.status.value, "sentence": self.sentence, "place": place}
