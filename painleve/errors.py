@@ -13,6 +13,6 @@ class InputError(ValueError):
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """For such a message: `; did you mean NAME?` where a known name is like this one, else nothing."""
+    """For such a message: ` (did you mean NAME?)` where a known name is like this one, else nothing."""
     found = difflib.get_close_matches(name[:40], list(known), n=1)
-    return f"; did you mean {found[0]}?" if found else ""
+    return f" (did you mean {found[0]}?)" if found else ""

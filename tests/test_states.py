@@ -168,8 +168,20 @@ def test_a_state_shows_itself_in_one_short_line_and_so_does_what_holds_it():
 PARADOX = "paradox"
 WRONG = {
     "no theta": (ROD, None, {}, {}, "needs theta .inclination, rad.; give theta=EXPRESSION or a named state: sliding"),
-    "unknown key": (ROD, PARADOX, {"zeta": 1}, {}, "no state key 'zeta'; keys: theta, slip, omega"),
-    "unknown state": (ROD, "paradise", {}, {}, "no state 'paradise'; named states: sliding, paradox"),
+    "unknown key": (
+        ROD,
+        PARADOX,
+        {"zeta": 1},
+        {},
+        r"no state key 'zeta' \(did you mean theta\?\); keys: theta",
+    ),
+    "unknown state": (
+        ROD,
+        "paradise",
+        {},
+        {},
+        r"no state 'paradise' \(did you mean paradox\?\); named states: sl",
+    ),
     "unknown parameter": (ROD, PARADOX, {}, {"nu": 1}, "no parameter 'nu'; it has m, l, I, mu, gravity"),
     "above the floor": (ROD, PARADOX, {"y": 1}, {}, r"off the constraint: g\(q\) = -0.105573 and must be exactly 0"),
     "a little below": (ROD, PARADOX, {"y": "2/sqrt(5)-1e-30"}, {}, r"off the constraint: g\(q\) = 1e-30"),

@@ -131,7 +131,7 @@ def test_every_kind_of_dataset_explains_itself_and_survives_the_disk(
         ({"eps": [math.nan]}, "positive"),
         ({"states": ["nowhere"]}, "no state 'nowhere'"),
         ({"states": ["paradox", "paradox"]}, "named twice"),
-        ({"over": {"nu": ["1"]}}, "no parameter 'nu'"),
+        ({"over": {"nu": ["1"]}}, "no parameter and no state key 'nu'"),
         ({"over": {"mu": []}}, "no values"),
         ({"over": {"mu": ["__import__('os')"]}}, "mu"),
         ({"method": "guess"}, "no 'guess'"),

@@ -10,7 +10,7 @@ from painleve.asymptotics.certify.method import CertifyOptions, certify_distance
 from painleve.asymptotics.distance import Distance
 from painleve.asymptotics.optimise import OptimiseOptions, optimise_distance
 from painleve.asymptotics.sample import SampleOptions, sample_distance
-from painleve.errors import InputError
+from painleve.errors import InputError, nearest
 from painleve.theory.limit_set import LimitSet
 
 __all__ = ["METHODS", "Method", "distance", "find_method"]
@@ -36,7 +36,7 @@ METHODS: Mapping[str, Method] = MappingProxyType(
 def find_method(name: str) -> Method:
     """The method of that name. Raises InputError for an unknown one."""
     if name not in METHODS:
-        raise InputError(f"method: no {name!r}; choose one of {', '.join(METHODS)}")
+        raise InputError(f"method: no {name!r}{nearest(name, METHODS)}; choose one of {', '.join(METHODS)}")
     return METHODS[name]
 
 

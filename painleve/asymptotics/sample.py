@@ -22,7 +22,7 @@ from painleve.core.lattice import kronecker_generators, kronecker_shifts
 from painleve.core.reduce import PAIR, POINT, SEGMENT
 from painleve.core.sampling import BLOCK, Sampler
 from painleve.core.taylor import no_polynomials
-from painleve.errors import InputError
+from painleve.errors import InputError, nearest
 from painleve.sets import Bounds, excess_of_segment_from_profile
 from painleve.theory.limit_set import LimitSet
 
@@ -54,7 +54,8 @@ class SampleOptions:
         if not 0 <= self.seed < 2**63:
             raise InputError(f"seed: {self.seed} must be between 0 and 2^63 - 1")
         if self.sampler not in SAMPLERS:
-            raise InputError(f"sampler: no {self.sampler!r}; choose one of {', '.join(SAMPLERS)}")
+            hint = nearest(self.sampler, SAMPLERS)
+            raise InputError(f"sampler: no {self.sampler!r}{hint}; choose one of {', '.join(SAMPLERS)}")
         if self.threads is not None and self.threads < 1:
             raise InputError(f"threads: {self.threads} must be at least 1")
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NoReturn
 
 from painleve.cli import (
@@ -22,7 +23,7 @@ from painleve.cli import (
     study,
     sweep,
 )
-from painleve.errors import InputError
+from painleve.errors import InputError, nearest
 
 __all__ = ["main"]
 
@@ -53,7 +54,10 @@ class _Parser(argparse.ArgumentParser):
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status."""
     try:
-        options = _parser().parse_args(arguments)
+        words = sys.argv[1:] if arguments is None else list(arguments)
+        parser, commands = _parser()
+        _check_words(words, commands)
+        options = parser.parse_args(words)
         return int(options.run(options))
     except InputError as error:
         return _complain(str(error))
@@ -73,7 +77,24 @@ def _complain(message: str) -> int:
     return 2
 
 
-def _parser() -> argparse.ArgumentParser:
+def _check_words(words: Sequence[str], commands: Mapping[str, argparse.ArgumentParser]) -> None:
+    """Refuse an unknown command or option with the nearest that there is, before argparse misses another."""
+    if not words or words[0].startswith("-"):
+        return
+    name = words[0]
+    if name not in commands:
+        raise InputError(f"no command {name!r}{nearest(name, commands)}; choose one of {', '.join(commands)}")
+    known = re.findall(r"(?<![\w-])--[a-z-]+", commands[name].format_help())
+    for word in words[1:]:
+        option = word.partition("=")[0]
+        if option == "--":
+            return
+        if option.startswith("--") and not any(k.startswith(option) for k in known):
+            raise InputError(f"no option {option!r}{nearest(option, known)}; see painleve {name} --help")
+
+
+def _parser() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentParser]]:
+    """The parser, and those of the commands by their names."""
     parser = _Parser(
         prog="painleve",
         description="Painlevé paradoxes: derive scenes, decide Theorem 1, measure A_eps against A.",
@@ -83,7 +104,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=_Parser)
     for command in COMMANDS:
         command.register(commands)
-    return parser
+    return parser, commands.choices
 
 
 def _version() -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 from painleve.cli.common import add_command, add_json, count, print_json
 from painleve.cli.studies import CHECKOUT, claim_of, study_names, title_of
-from painleve.errors import InputError
+from painleve.errors import InputError, nearest
 
 
 def register(commands: Any) -> None:
@@ -33,7 +33,7 @@ def run(options: argparse.Namespace) -> int:
     if options.name is None:
         return _list(names, options.json)
     if options.name not in names:
-        raise InputError(f"study: no {options.name!r}; choose one of {', '.join(names)}")
+        raise InputError(f"study: no {options.name!r}{nearest(options.name, names)}; choose one of {', '.join(names)}")
     output = options.output or CHECKOUT / "data" / options.name
     if output.exists() and not output.is_dir():
         raise InputError(f"output {output}: is a file; give a folder")

@@ -10,7 +10,7 @@ from painleve.dynamics.fixed_step import run_fixed_step
 from painleve.dynamics.grid import TimeGrid
 from painleve.dynamics.start import Start
 from painleve.dynamics.trajectory import Trajectory
-from painleve.errors import InputError
+from painleve.errors import InputError, nearest
 
 __all__ = ["Integrated", "Progress", "Scheme", "Stepped"]
 
@@ -48,7 +48,9 @@ class Scheme:
         for name in given or {}:
             if name not in self.options:
                 known = ", ".join(self.options) or "none"
-                raise InputError(f"scheme {self.name}: no option {name!r}; it has: {known}")
+                raise InputError(
+                    f"scheme {self.name}: no option {name!r}{nearest(name, self.options)}; it has: {known}"
+                )
         return {**self.options, **(given or {})}
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from painleve.errors import InputError
+from painleve.errors import InputError, nearest
 from painleve.exact.parse import exact_number
 from painleve.kernels.motion import Motion, make_motion
 from painleve.mechanics.scene import Scene
@@ -64,7 +64,10 @@ def make_start(
     for what, given in (("q", q), ("u", u or {})):
         for name in given:
             if name not in names:
-                raise InputError(f"scene {scene.name}: no coordinate {name!r} for {what}; it has {', '.join(names)}")
+                hint = nearest(name, names)
+                raise InputError(
+                    f"scene {scene.name}: no coordinate {name!r} for {what}{hint}; it has {', '.join(names)}"
+                )
     missing = [name for name in names if name not in q]
     if missing:
         raise InputError(f"scene {scene.name}: the start needs q of {', '.join(missing)}; give name=EXPRESSION")

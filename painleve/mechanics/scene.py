@@ -12,7 +12,7 @@ from typing import Literal
 
 import sympy as sp
 
-from painleve.errors import InputError
+from painleve.errors import InputError, nearest
 from painleve.mechanics.friction import Polygon, Section
 
 __all__ = ["Coordinate", "NamedState", "Outline", "Parameter", "Scene", "StateKey", "make_scene"]
@@ -162,14 +162,20 @@ class Scene:
             if parameter.name == name:
                 return parameter
         known = ", ".join(p.name for p in self.parameters)
-        raise InputError(f"scene {self.name}: no parameter {name!r}; it has {known}")
+        hint = nearest(name, (p.name for p in self.parameters))
+        if name in {k.name for k in self.keys} | {str(s) for s in (*self.q, *self.u)}:
+            hint = " (it is a state key, and given with the state)"
+        raise InputError(f"scene {self.name}: no parameter {name!r}{hint}; it has {known or 'none'}")
 
     def state(self, name: str) -> NamedState:
         for state in self.states:
             if state.name == name:
                 return state
         known = ", ".join(s.name for s in self.states) or "none"
-        raise InputError(f"scene {self.name}: no state {name!r}; named states: {known}")
+        hint = nearest(name, (s.name for s in self.states))
+        if name in {k.name for k in self.keys}:
+            hint = f" (it is a state key: give {name}=EXPRESSION)"
+        raise InputError(f"scene {self.name}: no state {name!r}{hint}; named states: {known}")
 
 
 def make_scene(

@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 import sympy as sp
 
-from painleve.errors import InputError
+from painleve.errors import InputError, nearest
 from painleve.exact.balls import ball
 from painleve.exact.parse import exact_number, parse_expression
 from painleve.exact.signs import Sign, exact_sign
@@ -115,8 +115,9 @@ def make_curve(
     The rest is as for make_state, and so are the errors; states of the curve are checked when they are made.
     """
     if along not in {key.name for key in scene.keys}:
+        names = [key.name for key in scene.keys]
         raise InputError(
-            f"scene {scene.name}: no state key {along!r} to go along; keys: {', '.join(key.name for key in scene.keys)}"
+            f"scene {scene.name}: no state key {along!r} to go along{nearest(along, names)}; keys: {', '.join(names)}"
         )
     if along in (keys or {}):
         raise InputError(f"scene {scene.name}: {along} is given, and so cannot vary; leave it out")
@@ -167,8 +168,11 @@ def _sort_keys(
     natural = {k.name: k for k in scene.keys}
     for name in given:
         if name not in natural and name not in raw:
+            hint = nearest(name, [*natural, *sorted(raw)])
+            if name in {p.name for p in scene.parameters}:
+                hint = " (it is a parameter, and given beside the state: --set)"
             raise InputError(
-                f"scene {scene.name}: no state key {name!r}; keys: {', '.join(natural)}; "
+                f"scene {scene.name}: no state key {name!r}{hint}; keys: {', '.join(natural)}; "
                 f"single components: {', '.join(sorted(raw - set(natural)))}"
             )
     exact = {name: exact_number(value, where=f"state key {name}") for name, value in given.items()}

@@ -12,7 +12,7 @@ import sympy as sp
 import xarray as xr
 
 from painleve.dataset_names import EXACT, IN_SWEEPS
-from painleve.errors import InputError
+from painleve.errors import InputError, nearest
 from painleve.exact.parse import exact_number
 from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import Number, State, make_state
@@ -123,5 +123,9 @@ def meaning(scene: Scene, name: str) -> tuple[str, str]:
             return coordinate.unit, f"coordinate {name}: {coordinate.sentence}"
         if f"u_{coordinate.name}" == name:
             return f"{coordinate.unit}/s", f"velocity of {coordinate.name}: {coordinate.sentence}"
+    if name not in {p.name for p in scene.parameters}:
+        known = [*(k.name for k in scene.keys), *(p.name for p in scene.parameters)]
+        hint = nearest(name, known)
+        raise InputError(f"scene {scene.name}: no parameter and no state key {name!r}{hint}; it has {', '.join(known)}")
     parameter = scene.parameter(name)
     return parameter.unit, f"parameter {name}: {parameter.sentence}"

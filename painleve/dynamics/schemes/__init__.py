@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 
 from painleve.dynamics.scheme import Scheme
-from painleve.errors import InputError
+from painleve.errors import InputError, nearest
 from painleve.mechanics.scene import Scene
 
 __all__ = ["SCHEME_NAMES", "load_scheme", "scheme_for"]
@@ -24,7 +24,7 @@ SCHEME_NAMES = (
 def load_scheme(name: str) -> Scheme:
     """The scheme of that name. Raises InputError for an unknown one."""
     if name not in SCHEME_NAMES:
-        raise InputError(f"scheme: no {name!r}; choose one of {', '.join(SCHEME_NAMES)}")
+        raise InputError(f"scheme: no {name!r}{nearest(name, SCHEME_NAMES)}; choose one of {', '.join(SCHEME_NAMES)}")
     return import_module(f"painleve.dynamics.schemes.{name}").SCHEME
 
 

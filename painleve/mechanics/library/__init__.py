@@ -6,7 +6,7 @@ import os
 from importlib import import_module
 from pathlib import Path
 
-from painleve.errors import InputError
+from painleve.errors import InputError, nearest
 from painleve.mechanics.scene import Scene
 from painleve.mechanics.scene_file import read_scene
 
@@ -38,7 +38,9 @@ def load_scene(name: str | Path) -> Scene:
         return scene
     if isinstance(name, Path) or name.endswith(".toml") or os.sep in name:
         return read_scene(name)
+    if Path(name).suffix:
+        raise InputError(f"no scene {name!r}: of files, those in TOML are read, such as my_scene.toml")
     raise InputError(
-        f"no scene {name!r}; the library has {', '.join(SCENE_NAMES)}, and a scene of your own is given "
-        "by its file, such as my_scene.toml; `painleve new-scene` writes one"
+        f"no scene {name!r}{nearest(name, SCENE_NAMES)}; the library has {', '.join(SCENE_NAMES)}, and a scene of your "
+        "own is given by its file, such as my_scene.toml; `painleve new-scene` writes one"
     )
