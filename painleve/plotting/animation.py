@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -15,8 +14,8 @@ from matplotlib.figure import Figure
 from painleve.errors import InputError
 from painleve.plotting.style import STYLE, WIDTH
 from painleve.plotting.trajectory import draw_body, frame_body, spaced
-from painleve.plotting.whole_file import written_aside
 from painleve.store import check_writable
+from painleve.whole_file import written_aside
 
 __all__ = ["FRAMES", "animate"]
 
@@ -36,8 +35,7 @@ def animate(dataset: xr.Dataset, path: str | Path, progress: Callable[[int], Non
         raise InputError(f"output {target}: an animation is a .gif; give such a name")
     if dataset.attrs.get("kind") != "trajectory" or "outline_x" not in dataset:
         raise InputError("no animation for this dataset: it needs a trajectory of a scene that has an outline")
-    aside = target.with_name(f".{target.stem}.{os.getpid()}.part.gif")  # Pillow chooses the format by the suffix
-    with written_aside(target, aside), mpl.rc_context(STYLE):
+    with written_aside(target, ".gif") as aside, mpl.rc_context(STYLE):  # Pillow chooses the format by the suffix
         _write(dataset, aside, progress)
     return target
 

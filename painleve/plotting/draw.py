@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -19,8 +18,8 @@ from painleve.plotting.members import draw_members
 from painleve.plotting.regimes import draw_regimes
 from painleve.plotting.style import STYLE
 from painleve.plotting.trajectory import draw_trajectory
-from painleve.plotting.whole_file import written_aside
 from painleve.store import check_writable
+from painleve.whole_file import written_aside
 
 __all__ = ["DRAWINGS", "Drawing", "draw", "save_figure"]
 
@@ -67,7 +66,6 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
     form = target.suffix.removeprefix(".").lower()
     if form not in WITHOUT_DATE:
         raise InputError(f"output {target}: cannot draw {form or 'a file without a suffix'}; use .pdf, .png or .svg")
-    aside = target.with_name(f".{target.name}.{os.getpid()}.part")
-    with written_aside(target, aside), mpl.rc_context({**STYLE, "svg.hashsalt": "painleve"}):
+    with written_aside(target) as aside, mpl.rc_context({**STYLE, "svg.hashsalt": "painleve"}):
         figure.savefig(aside, format=form, metadata=WITHOUT_DATE[form])
     return target
