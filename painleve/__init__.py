@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from painleve.mechanics.library import SCENE_NAMES, load_scene
     from painleve.mechanics.scene import Coordinate, NamedState, Outline, Parameter, StateKey, make_scene
     from painleve.mechanics.state import make_state
+    from painleve.mechanics.units.check import check_units
     from painleve.plotting.draw import draw, save_figure
     from painleve.store import load, save
     from painleve.sweep.distances import sweep_distances
@@ -53,6 +54,7 @@ _HOMES = {
     "Segment": "painleve.mechanics.friction",
     "StateKey": "painleve.mechanics.scene",
     "check_hypotheses": "painleve.theory.hypotheses.check",
+    "check_units": "painleve.mechanics.units.check",
     "classify": "painleve.theory.classification",
     "collect": "painleve.asymptotics.theorem",
     "coulomb_solutions": "painleve.theory.coulomb.one_step",
@@ -94,6 +96,7 @@ __all__ = [
     "Segment",
     "StateKey",
     "check_hypotheses",
+    "check_units",
     "classify",
     "collect",
     "coulomb_solutions",

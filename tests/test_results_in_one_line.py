@@ -40,6 +40,11 @@ def hypotheses():
     return painleve.check_hypotheses(state())
 
 
+def units():
+    pytest.importorskip("pint")
+    return painleve.check_units(painleve.load_scene(ROD))
+
+
 @cache
 def one_step():
     return painleve.coulomb_solutions(painleve.load_scene(ROD), state().q, state().u, parameters={"mu": 2})
@@ -74,6 +79,7 @@ RESULTS: dict[str, tuple[Callable[[], object], str]] = {
         "Theorem 1 applies)",
     ),
     "Hypothesis": (lambda: hypotheses()["H1"], "Hypothesis(H1, proved)"),
+    "UnitsCheck": (units, "UnitsCheck('slender_rod', 24 quantities: agrees)"),
     "CriticalStates": (
         critical,
         "CriticalStates('slender_rod', along 'theta'; zeros of gamma: 2, extrema of mu_c: 1, unresolved: 0)",

@@ -1,4 +1,4 @@
-"""`painleve check SCENE`: the hypotheses of Theorem 1 near a state."""
+"""`painleve check SCENE`: the hypotheses of Theorem 1 near a state, and the units of the scene."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ import textwrap
 from typing import TYPE_CHECKING, Any
 
 from painleve.cli.common import add_command, add_json, add_scene, add_state, assignments, print_json, read_state
+from painleve.errors import InputError
 
 if TYPE_CHECKING:
+    from painleve.mechanics.scene import Scene
     from painleve.theory.hypotheses.check import HypothesesCheck
 
 WIDTH = 118
@@ -19,7 +21,7 @@ def register(commands: Any) -> None:
         commands,
         "check",
         run,
-        sentence="check the hypotheses (H1) to (H4) of Theorem 1 near a state, or near each named state",
+        sentence="check the hypotheses (H1) to (H4) of Theorem 1 near a state, or near each named state, and the units",
         example="painleve check slender_rod --state paradox --radius 1/10",
     )
     add_scene(parser)
@@ -39,14 +41,44 @@ def run(options: argparse.Namespace) -> int:
     radius = DEFAULT_RADIUS if options.radius is None else options.radius
     if options.state:
         found = check_hypotheses(read_state(options), radius=radius)
-        print_json(found.as_dict()) if options.json else _print_one(found)
+        if options.json:
+            print_json({**found.as_dict(), "units": _units(found.state.scene)})
+        else:
+            _print_one(found)
+            _print_units(found.state.scene)
         return 0
     checks = [check_hypotheses(state, radius=radius) for state in _named_states(options)]
     if options.json:
-        print_json({"scene": options.scene, "states": {c.state.label: c.as_dict() for c in checks}})
+        states = {c.state.label: c.as_dict() for c in checks}
+        print_json({"scene": options.scene, "states": states, "units": _units(checks[0].state.scene)})
     else:
         _print_table(checks)
+        _print_units(checks[0].state.scene)
     return 0
+
+
+def _units(scene: Scene) -> dict[str, Any]:
+    """The units for machines; without pint why they are not checked."""
+    from painleve.mechanics.units.check import Agreement, check_units
+
+    try:
+        return check_units(scene).as_dict()
+    except InputError as reason:
+        return {"status": Agreement.UNCHECKED.value, "reason": str(reason)}
+
+
+def _print_units(scene: Scene) -> None:
+    """One line where all agree, else one a quantity that does not, or that could not be checked."""
+    facts = _units(scene)
+    if "reason" in facts:
+        print(f"\nunits: {facts['status']}: {facts['reason']}")
+        return
+    agree, open_ones = facts["agree"], facts["open"]
+    known = f", {len(open_ones)} do not or could not be checked" if open_ones else ""
+    print(f"\nunits: {len(agree)} quantities agree{known}")
+    for found in open_ones:
+        line = "{what}: {status}: {sentence}".format(**found)
+        print(textwrap.fill(line, WIDTH, initial_indent="  ", subsequent_indent="     "))
 
 
 def _named_states(options: argparse.Namespace) -> list[Any]:
