@@ -49,10 +49,11 @@ class Reference:
         numbers = {p.symbol: values[p.name] for p in scene.parameters}
         self.scene = scene
         arguments = (T, *scene.q, *scene.u)
-        normal = sp.Matrix([-sp.diff(scene.constraint, x) for x in scene.q])
-        friction = scene.friction or Segment(minus=sp.Integer(0), plus=sp.Integer(0))
-        tangents = scene.tangents if scene.friction else sp.zeros(scene.dimension, 1)
-        quantities = (scene.inertia, scene.force, scene.constraint, normal, tangents, friction.minus, friction.plus)
+        normal = sp.Matrix([-sp.diff(scene.contact.constraint, x) for x in scene.q])
+        self.frictional = scene.contact.section.dimension > 0
+        friction = scene.contact.section if self.frictional else Segment(minus=sp.Integer(0), plus=sp.Integer(0))
+        H = scene.contact.tangents if self.frictional else sp.zeros(scene.dimension, 1)
+        quantities = (scene.inertia, scene.force, scene.contact.constraint, normal, H, friction.minus, friction.plus)
         self.functions = [sp.lambdify(arguments, sp.sympify(e).xreplace(numbers)) for e in quantities]
 
     def at(self, t: float, q: np.ndarray, u: np.ndarray) -> list[np.ndarray]:
@@ -80,7 +81,7 @@ class Reference:
                 high = min(high, bound / alpha)
             elif alpha < 0:
                 low = max(low, bound / alpha)
-        if not self.scene.friction:
+        if not self.frictional:
             return q, base
         best = -(base @ M @ slope) / (slope @ M @ slope)
         return q, base + slope * min(max(best, low), high)

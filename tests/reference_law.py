@@ -70,9 +70,10 @@ class Reference:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        normal = [-sp.diff(scene.constraint, x) for x in scene.q]
-        ends = [scene.friction.minus, scene.friction.plus] if scene.friction else [sp.Integer(0)] * 2
-        parts = [*scene.inertia, *normal, *scene.tangents, *ends, scene.constraint]
+        normal = [-sp.diff(scene.contact.constraint, x) for x in scene.q]
+        section = scene.contact.section
+        ends = [section.minus, section.plus] if section.dimension else [sp.Integer(0)] * 2
+        parts = [*scene.inertia, *normal, *scene.contact.tangents, *ends, scene.contact.constraint]
         self.function = sp.lambdify([*scene.q, *scene.p], parts, modules="mpmath")
 
     def at(self, q: Sequence[mpmath.mpf], p: Sequence[mpmath.mpf]) -> Local:
@@ -82,7 +83,7 @@ class Reference:
             for j in range(d):
                 M[i, j] = values[i * d + j]
         w_n, tail = mpmath.matrix(values[d * d : d * d + d]), values[d * d + d :]
-        H = mpmath.matrix(tail[:d]) if self.scene.friction else None
+        H = mpmath.matrix(tail[:d]) if self.scene.contact.section.dimension else None
         minus, plus, g = tail[-3:]
         return Local(M=M, w_n=w_n, H=H, minus=minus, plus=plus, g=g)
 

@@ -56,10 +56,11 @@ def limit_of(scene: str, name: str) -> LimitSet:
 
 @cache
 def _function(scene: Scene):
-    normal = [-sp.diff(scene.constraint, x) for x in scene.q]
-    friction = scene.friction
+    normal = [-sp.diff(scene.contact.constraint, x) for x in scene.q]
+    friction = scene.contact.section
     section = list(friction.map) if hasattr(friction, "map") else [x for v in friction.vertices for x in v]
-    return sp.lambdify([*scene.q, *scene.p], [[*scene.inertia], normal, [*scene.tangents], section], modules="mpmath")
+    parts = [[*scene.inertia], normal, [*scene.contact.tangents], section]
+    return sp.lambdify([*scene.q, *scene.p], parts, modules="mpmath")
 
 
 class Impulse:

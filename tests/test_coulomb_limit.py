@@ -23,7 +23,7 @@ from painleve.theory.coulomb.one_step import coulomb_solutions
 from painleve.theory.limit_set import limit_set
 
 STATES = [(scene, state.name) for scene in SCENE_NAMES for state in load_scene(scene).states]
-PLANAR = [(scene, state) for scene, state in STATES if load_scene(scene).friction_dimension < 2]
+PLANAR = [(scene, state) for scene, state in STATES if load_scene(scene).contact.section.dimension < 2]
 
 
 def tangential(G: list[list[object]], friction: Disc | Polygon | Segment, *v_t: object) -> State:

@@ -105,10 +105,14 @@ def violations(state: State, radius: float) -> dict[str, int]:
     """How many random configurations of the ball fail a hypothesis, by eigenvalues and singular values."""
     scene = state.scene
     M = function(state, scene.inertia)
-    w = function(state, [[sp.diff(scene.constraint, x)] for x in scene.q])
-    H = function(state, scene.tangents) if scene.friction else None
-    sound = function(state, [[c.expression] for c in scene.friction.conditions]) if scene.friction else None
-    spans = function(state, spanning(scene)) if scene.friction else None
+    w = function(state, [[sp.diff(scene.contact.constraint, x)] for x in scene.q])
+    H = function(state, scene.contact.tangents) if scene.contact.section.dimension else None
+    sound = (
+        function(state, [[c.expression] for c in scene.contact.section.conditions])
+        if scene.contact.section.dimension
+        else None
+    )
+    spans = function(state, spanning(scene)) if scene.contact.section.dimension else None
     count = dict.fromkeys(("H1", "H2", "H3", "H4", "H'4"), 0)
     for q in sample(state, radius):
         count["H1"] += np.linalg.eigvalsh(M(q)).min() <= 0
@@ -120,13 +124,13 @@ def violations(state: State, radius: float) -> dict[str, int]:
         rank = np.linalg.matrix_rank(generators)
         count["H3"] += sound(q).min() < 0 or np.linalg.matrix_rank(np.hstack([w(q), generators])) == rank
         count["H4"] += rank != 1
-        count["H'4"] += isinstance(scene.friction, Polygon) and rank > 1
+        count["H'4"] += isinstance(scene.contact.section, Polygon) and rank > 1
     return count
 
 
 def spanning(scene: Scene) -> sp.Matrix:
     """Points of B that span it."""
-    match scene.friction:
+    match scene.contact.section:
         case Segment(minus=minus, plus=plus):
             return sp.Matrix([[-minus, plus]])
         case Disc(mu=mu):
@@ -136,7 +140,7 @@ def spanning(scene: Scene) -> sp.Matrix:
             return sp.Matrix([[c, -s], [s, c]]) * sp.diag(one, other)
         case Polygon(vertices=vertices):
             return sp.Matrix(vertices).T
-    raise AssertionError(scene.friction)
+    raise AssertionError(scene.contact.section)
 
 
 def assert_consistent(state: State, found: HypothesesCheck) -> None:

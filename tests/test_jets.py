@@ -184,10 +184,10 @@ def test_at_an_exact_state_what_vanishes_there_is_zero_to_60_digits(scene, name)
     state = make_state(load_scene(scene), name)
     d = derive(state.scene)
     values = {s: ball(v, bits=320) for s, v in state.substitution.items()}
-    g, plus = jets([state.scene.constraint, d.edge_plus], state.scene.q, values, 2, bits=320)
+    g, plus = jets([state.scene.contact.constraint, d.edge_compliance.get(1, d.a)], state.scene.q, values, 2, bits=320)
     assert abs(float(g.constant().abs_upper())) < 1e-60
     if name in ("critical", "double_zero", "approached", "isolated"):
-        compliances = [plus, jets([d.edge_minus], state.scene.q, values, 2, bits=320)[0]]
+        compliances = [plus, jets([d.edge_compliance[-1]], state.scene.q, values, 2, bits=320)[0]]
         least = min(compliances, key=lambda jet: float(jet.constant().mid()))
         assert float(least.constant().abs_upper()) < 1e-60
         slopes = [float(least.terms.get(p, arb(0)).abs_upper()) for p in monomials(len(state.q), 1)[1:]]

@@ -91,7 +91,7 @@ def test_u_tilde_is_the_limit_of_the_law_at_q_itself_as_the_normal_velocity_tend
 def test_after_the_jump_the_tip_is_at_rest_exactly(scene, name):
     limit = limit_of(scene, name)
     state, d = limit.state, derive(limit.state.scene)
-    for direction in (d.normal, state.scene.tangents):
+    for direction in (d.normal, state.scene.contact.tangents):
         speed = sum(state.exact(w) * x for w, x in zip(direction, limit.u_tilde, strict=True))
         assert exact_sign(speed).sign is Sign.ZERO
 

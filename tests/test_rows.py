@@ -39,11 +39,11 @@ def test_each_part_of_the_rows_is_what_its_name_says(name: str):
     rows: Rows = rows_of(derive(scene))
     table, at, d = evaluated(scene, list(rows.expressions), name), rows.parts, scene.dimension
     M = evaluated(scene, list(scene.inertia), name).reshape(d, d)
-    w_n = evaluated(scene, [-sp.diff(scene.constraint, x) for x in scene.q], name)
-    H = evaluated(scene, list(scene.tangents), name).reshape(d, -1)
+    w_n = evaluated(scene, [-sp.diff(scene.contact.constraint, x) for x in scene.q], name)
+    H = evaluated(scene, list(scene.contact.tangents), name).reshape(d, -1)
     E = np.eye(H.shape[1])
-    if hasattr(scene.friction, "map"):
-        E = evaluated(scene, list(scene.friction.map), name).reshape(2, 2)
+    if hasattr(scene.contact.section, "map"):
+        E = evaluated(scene, list(scene.contact.section.map), name).reshape(2, 2)
     H = H @ E
     G = (W := np.column_stack([w_n, H])).T @ np.linalg.solve(M, W)
     k = H.shape[1]
@@ -58,7 +58,7 @@ def test_each_part_of_the_rows_is_what_its_name_says(name: str):
         "C": table[at.C],
     }
     wanted = {
-        "g": evaluated(scene, [scene.constraint], name)[0],
+        "g": evaluated(scene, [scene.contact.constraint], name)[0],
         "w_n": w_n,
         "Y_n": np.linalg.solve(M, w_n),
         "a": G[0, 0],
@@ -72,10 +72,10 @@ def test_each_part_of_the_rows_is_what_its_name_says(name: str):
     a, b = G[0, 0], G[0, 1:]
     edge_plus, section = a, np.zeros(0)
     if k == 1:
-        minus, plus = evaluated(scene, [scene.friction.minus, scene.friction.plus], name)
+        minus, plus = evaluated(scene, [scene.contact.section.minus, scene.contact.section.plus], name)
         edge_plus, section = a + plus * b[0], np.array([a - minus * b[0], plus, minus])
-    elif hasattr(scene.friction, "vertices"):
-        vertices = evaluated(scene, [x for v in scene.friction.vertices for x in v], name).reshape(-1, 2)
+    elif hasattr(scene.contact.section, "vertices"):
+        vertices = evaluated(scene, [x for v in scene.contact.section.vertices for x in v], name).reshape(-1, 2)
         section = np.concatenate([a + vertices @ b, vertices.ravel()])
     elif k == 2:
         edge_plus = a - np.linalg.norm(b)
@@ -87,11 +87,11 @@ def test_each_part_of_the_rows_is_what_its_name_says(name: str):
 @pytest.mark.parametrize("name", list(SCENES))
 def test_the_rows_of_a_section_are_where_compiled_code_looks_for_them(name: str):
     scene = SCENES[name]
-    rows, d, k = rows_of(derive(scene)), scene.dimension, scene.friction_dimension
+    rows, d, k = rows_of(derive(scene)), scene.dimension, scene.contact.section.dimension
     layout = row_layout(d, k)
     if k == 1:
         assert [rows.names[i] for i in segment_rows(layout)] == ["edge_minus", "mu_plus", "mu_minus"]
-    vertices = len(getattr(scene.friction, "vertices", ()))
+    vertices = len(getattr(scene.contact.section, "vertices", ()))
     if vertices:
         own = polygon_rows(layout, vertices)
         assert (rows.names[own.p], rows.names[own.s]) == ("p_1", "s_1_1")

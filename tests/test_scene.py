@@ -95,9 +95,9 @@ def test_a_wrong_scene_is_refused_in_one_line_that_names_what_is_at_fault(change
 
 def test_the_block_itself_is_accepted_so_each_refusal_has_one_cause():
     scene = block()
-    assert (scene.dimension, scene.friction_dimension) == (2, 1)
-    assert scene.tangents == sp.Matrix([1, 0])
-    assert block(friction=None, tangential_displacements=()).friction_dimension == 0
+    assert (scene.dimension, scene.contact.section.dimension) == (2, 1)
+    assert scene.contact.tangents == sp.Matrix([1, 0])
+    assert block(friction=None, tangential_displacements=()).contact.section.dimension == 0
 
 
 def test_a_formula_given_as_text_is_never_run():
@@ -110,7 +110,7 @@ def test_a_formula_given_as_text_is_never_run():
 
 
 def test_plain_numbers_are_coefficients_of_friction():
-    assert block(friction=Segment(minus=0, plus=2)).friction == Segment(minus=sp.Integer(0), plus=sp.Integer(2))
+    assert block(friction=Segment(minus=0, plus=2)).contact.section == Segment(minus=sp.Integer(0), plus=sp.Integer(2))
 
 
 def test_the_energy_of_a_skew_written_quadratic_form_gives_the_symmetric_inertia():

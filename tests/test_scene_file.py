@@ -16,7 +16,7 @@ from painleve.kernels.motion_source import motion_source
 from painleve.kernels.rows import rows_of
 from painleve.kernels.source import scene_source
 from painleve.mechanics.derive import derive
-from painleve.mechanics.friction import Disc, Ellipse, Polygon, Segment
+from painleve.mechanics.friction import Disc, Ellipse, NoFriction, Polygon, Segment
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 
@@ -33,8 +33,16 @@ def rod(tmp_path: Path) -> Path:
 def test_the_slender_rod_as_a_file_is_the_library_s(rod):
     """M, g, H, f, gamma and the parameters; and the object is the same until the file changes."""
     own, library = load_scene(rod), load_scene("slender_rod")
-    assert (own.inertia, own.force, own.constraint) == (library.inertia, library.force, library.constraint)
-    assert (own.tangents, own.friction, own.velocity) == (library.tangents, library.friction, library.velocity)
+    assert (own.inertia, own.force, own.contact.constraint) == (
+        library.inertia,
+        library.force,
+        library.contact.constraint,
+    )
+    assert (own.contact.tangents, own.contact.section, own.velocity) == (
+        library.contact.tangents,
+        library.contact.section,
+        library.velocity,
+    )
     assert derive(own).gamma == derive(library).gamma
     assert [(p.name, p.unit, p.range, p.latex) for p in own.parameters] == [
         (p.name, p.unit, p.range, p.latex) for p in library.parameters
@@ -86,9 +94,13 @@ SECTIONS = {
 @pytest.mark.parametrize(("text", "section"), SECTIONS.items(), ids=["disc", "ellipse", "polygon"])
 def test_a_scene_in_space_reads_with_every_friction_section(text, section):
     scene, library = read(spatial(text)), load_scene("spatial_rod")
-    assert scene.friction == section
-    assert (scene.inertia, scene.force, scene.constraint) == (library.inertia, library.force, library.constraint)
-    assert scene.tangents == library.tangents
+    assert scene.contact.section == section
+    assert (scene.inertia, scene.force, scene.contact.constraint) == (
+        library.inertia,
+        library.force,
+        library.contact.constraint,
+    )
+    assert scene.contact.tangents == library.contact.tangents
 
 
 def test_the_rod_in_space_as_a_file_has_the_gamma_and_the_critical_friction_of_the_library(rod):
@@ -99,10 +111,10 @@ def test_the_rod_in_space_as_a_file_has_the_gamma_and_the_critical_friction_of_t
 
 def test_a_segment_may_be_asymmetric_and_friction_may_be_absent():
     skew = TEMPLATE.replace('mu = "mu"', 'minus = "mu"\nplus = "2*mu"')
-    assert read(skew).friction == Segment(minus=MU, plus=2 * MU)
+    assert read(skew).contact.section == Segment(minus=MU, plus=2 * MU)
     bare = TEMPLATE.replace('kind = "segment"\nmu = "mu"', 'kind = "none"')
     displacement = 'tangential_displacements = "x - l*cos(theta)"'
-    assert read(bare.replace(displacement, "")).friction is None
+    assert read(bare.replace(displacement, "")).contact.section == NoFriction()
     with pytest.raises(InputError, match="there is 1 tangential displacement; without friction the contact needs none"):
         read(bare)
 
@@ -116,7 +128,11 @@ def test_the_ways_to_give_inertia_force_and_contact_agree():
         .replace('height = "y - l*sin(theta)"', 'g = "l*sin(theta) - y"')
     )
     first, second = read(TEMPLATE), read(other)
-    assert (first.inertia, first.force, first.constraint) == (second.inertia, second.force, second.constraint)
+    assert (first.inertia, first.force, first.contact.constraint) == (
+        second.inertia,
+        second.force,
+        second.contact.constraint,
+    )
 
 
 def test_numbers_of_a_file_are_exact():

@@ -253,9 +253,9 @@ def slip_motion(start: Start) -> Callable[[float, np.ndarray], np.ndarray]:
     numbers = {s.symbol: x for s, x in zip(start.scene.parameters, start.p, strict=True)}
     u = sp.Matrix(start.scene.u)
     drift = (u.T * d.normal.jacobian(start.scene.q) * u)[0, 0]
-    parts = (start.scene.inertia, start.scene.force, d.normal, start.scene.tangents, drift)
+    parts = (start.scene.inertia, start.scene.force, d.normal, start.scene.contact.tangents, drift)
     functions = [sp.lambdify([*start.scene.q, *start.scene.u], sp.sympify(e).xreplace(numbers)) for e in parts]
-    mu = float(sp.sympify(start.scene.friction.mu).xreplace(numbers))
+    mu = float(sp.sympify(start.scene.contact.section.mu).xreplace(numbers))
 
     def rate(t: float, y: np.ndarray) -> np.ndarray:
         M, f, w, H, drift_n = (np.asarray(function(*y), float) for function in functions)

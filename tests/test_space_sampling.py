@@ -75,7 +75,7 @@ def test_members_in_space_satisfy_the_conditions_of_least_energy_at_90_digits(sc
             assert abs(impulse.normal_velocity) < tiny
             if member.branch is ContactMode.STICK:
                 assert mpmath.norm(impulse.velocity) < tiny
-            elif isinstance(limit.state.scene.friction, Polygon):
+            elif isinstance(limit.state.scene.contact.section, Polygon):
                 assert impulse.is_least_on_polygon(tiny)
             else:
                 assert impulse.is_least_on_conic(tiny)
@@ -91,8 +91,8 @@ def clarabel(scene, rows, v):
     G = W.T @ Y
     r = cp.Variable(3)
     conditions = [G[0] @ r == -W[:, 0] @ v]
-    if isinstance(scene.friction, Polygon):
-        n = len(scene.friction.vertices)
+    if isinstance(scene.contact.section, Polygon):
+        n = len(scene.contact.section.vertices)
         x = cp.Variable(n, nonneg=True)
         s = np.array([[value[names[f"s_{k}_{i + 1}"]] for i in range(n)] for k in (1, 2)])
         conditions += [r[0] == cp.sum(x), r[1:] == s @ x]

@@ -198,7 +198,7 @@ def test_the_same_trajectory_gives_the_same_picture(datasets: dict[str, xr.Datas
 def test_every_scene_of_the_library_has_an_outline_that_touches_the_floor_at_g_0(scene: str) -> None:
     found = load_scene(scene)
     assert found.outline is not None
-    tips = [sp.simplify(y - found.outline.floor + found.constraint) for _, y in found.outline.points]
+    tips = [sp.simplify(y - found.outline.floor + found.contact.constraint) for _, y in found.outline.points]
     assert 0 in tips
 
 
@@ -216,6 +216,6 @@ def test_an_outline_of_undeclared_symbols_is_refused() -> None:
                 coordinates=point.coordinates,
                 parameters=point.parameters,
                 inertia=point.inertia,
-                constraint=point.constraint,
+                constraint=point.contact.constraint,
                 outline=outline,
             )

@@ -250,10 +250,11 @@ def _floats(limit: LimitSet, values: Sequence[sp.Expr]) -> np.ndarray:
 def _base_impulse(limit: LimitSet) -> np.ndarray | SpaceBase | PolygonBase:
     """-G^-1 v_c at the base state, whether or not it is in the cone (0 without friction)."""
     state, d = limit.state, make_kernels(limit.state.scene).derivation
-    if state.scene.friction_dimension == 2:
+    if state.scene.contact.section.dimension == 2:
         return space_base(limit, BITS)
-    if d.b is None or d.C is None:
+    if not state.scene.contact.section.dimension:
         return np.zeros(2)
-    slip = (state.scene.tangents.T * sp.Matrix(state.scene.u))[0, 0]
-    determinant = d.a * d.C - d.b**2
-    return np.array([state.number(slip * d.b / determinant), state.number(-slip * d.a / determinant)])
+    slip = (state.scene.contact.tangents.T * sp.Matrix(state.scene.u))[0, 0]
+    (b,), (C,) = d.couplings, d.compliance
+    determinant = d.a * C - b**2
+    return np.array([state.number(slip * b / determinant), state.number(-slip * d.a / determinant)])

@@ -130,9 +130,9 @@ def _law(problem: LocalProblem, dq: Balls, dv: Balls) -> tuple[Balls, ContactMod
     contact = at_base or not _certain(rows[parts.g] < 0, rows[parts.g] >= 0, "contact")
     if not contact or _certain(v_n >= 0, v_n < 0, "the sign of v_n"):
         return dv, ContactMode.FREE
-    if problem.limit.state.scene.friction is None:
+    if not problem.limit.state.scene.contact.section.dimension:
         return [x - y * v_n / a for x, y in zip(dv, Y_n, strict=True)], ContactMode.FRICTIONLESS
-    if problem.limit.state.scene.friction_dimension == 2:
+    if problem.limit.state.scene.contact.section.dimension == 2:
         return _law_in_space(problem, rows, v, v_n, dv, at_base)
     H, Y_t = rows[parts.H[0]], rows[parts.Y_t[0]]
     (b,), (C,), (minus, mu_plus, mu_minus) = rows[parts.b], rows[parts.C], rows[parts.section]

@@ -59,7 +59,7 @@ def optimise_distance(limit: LimitSet, eps: float, options: OptimiseOptions | No
     options, eps = options or OptimiseOptions(), check_eps(eps)
     if limit.kind == "undecided":
         raise InputError(f"state {limit.state.label}: no distance to a limit set that is undecided: {limit.reason}")
-    if limit.state.scene.friction_dimension == 2:
+    if limit.state.scene.contact.section.dimension == 2:
         return optimise_in_space(limit, eps, starts=options.starts, arithmetic=options.arithmetic)
     problem = make_local_problem(limit)
     if len(problem.shape) > 2:

@@ -106,7 +106,7 @@ def rate(limit: LimitSet) -> Rate:
     if near is not None and near.kind is Neighbourhood.UNDECIDED:
         raise InputError(f"{where}: no rate while it is undecided which part of A is approached: {near.reason}")
     isolated = near is not None and near.kind is Neighbourhood.ISOLATED
-    if limit.state.scene.friction_dimension == 2:
+    if limit.state.scene.contact.section.dimension == 2:
         return _in_space(limit, isolated)
     problem = make_local_problem(limit)
     if len(problem.shape) > 2:
@@ -206,8 +206,8 @@ def _hessian(problem: LocalProblem, branch: ContactMode) -> np.ndarray:
 def _parallel(limit: LimitSet) -> bool:
     """Whether grad p is parallel to grad g, exactly."""
     state, d = limit.state, derive(limit.state.scene)
-    p = d.edge_compliance(limit.edge)
-    grads = [[state.exact(sp.diff(f, x)) for x in state.scene.q] for f in (p, state.scene.constraint)]
+    p = d.edge_compliance[limit.edge]
+    grads = [[state.exact(sp.diff(f, x)) for x in state.scene.q] for f in (p, state.scene.contact.constraint)]
     for i, j in combinations(range(len(grads[0])), 2):
         minor = exact_sign(grads[0][i] * grads[1][j] - grads[0][j] * grads[1][i])
         if minor.sign is Sign.UNDECIDED:
@@ -250,7 +250,7 @@ def _closed_form(limit: LimitSet) -> sp.Expr | None:
     if exact_sign(state.exact((sp.diff(d.normal, theta).T * u)[0, 0])).sign is not Sign.ZERO:
         return None
     stopped = _stopped(scene)
-    e = d.normal.cross(scene.tangents)
+    e = d.normal.cross(scene.contact.tangents)
     e = state.exact(e / sp.sqrt((e.T * e)[0, 0]))
     change = state.exact(-sp.diff(stopped, theta) * u)
     n, normal = e - state.exact(stopped.T) * e, state.exact(d.normal)
@@ -258,7 +258,7 @@ def _closed_form(limit: LimitSet) -> sp.Expr | None:
     # m runs from -|n| on the side of falling v_n to |n| sin(a) on the other.
     inward = -1 if sp.N(leaning) < 0 else 1
     m_ends = (-inward * sp.sqrt(size2), inward * sp.sqrt(size2 - leaning**2 / (normal.T * normal)[0, 0]))
-    slope = state.exact(sp.diff(scene.constraint, theta))
+    slope = state.exact(sp.diff(scene.contact.constraint, theta))
     carried = sum((state.exact(d.normal[i]) ** 2 for i in d.carried), sp.Integer(0))
     sense = -1 if sp.N(slope) < 0 else 1
     xi_ends = (sp.Integer(sense), -sense * sp.sqrt(carried / (carried + slope**2)))
@@ -274,7 +274,7 @@ def _closed_form(limit: LimitSet) -> sp.Expr | None:
 def _stopped(scene: Scene) -> sp.MatrixBase:
     """Y G^-1 W^T: what of v the sticking impulse takes away."""
     d = derive(scene)
-    W, Y = d.normal.row_join(scene.tangents), d.normal_response.row_join(d.tangent_response)
+    W, Y = d.normal.row_join(scene.contact.tangents), d.normal_response.row_join(d.tangent_response)
     inverse = (W.T * Y).applyfunc(sp.cancel).inv().applyfunc(_shortened)
     return (Y * inverse * W.T).applyfunc(_shortened).applyfunc(sp.expand_trig)
 

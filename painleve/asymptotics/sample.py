@@ -246,7 +246,7 @@ def _has(problem: LocalProblem, branch: ContactMode) -> bool:
         1: (ContactMode.STICK, ContactMode.SLIP_PLUS, ContactMode.SLIP_MINUS),
         2: (ContactMode.STICK, ContactMode.SLIP),
     }
-    return branch is ContactMode.FREE or branch in contact[problem.limit.state.scene.friction_dimension]
+    return branch is ContactMode.FREE or branch in contact[problem.limit.state.scene.contact.section.dimension]
 
 
 def _lanes(stream: _Stream) -> Iterable[_SampleTally]:

@@ -56,7 +56,7 @@ class PlaneSearch:
         set (painleve.core.reduce); starts: how many of the grid's best places are refined."""
         self.problem, self.eps, self.kind, self.differences = problem, eps, kind, differences
         self.base, self.starts = problem.base if base is None else base, starts
-        planar = problem.limit.state.scene.friction is not None
+        planar = problem.limit.state.scene.contact.section.dimension
         self.branches: tuple[ContactMode, ...] = (ContactMode.STICK, *SLIPS) if planar else (ContactMode.FRICTIONLESS,)
         self.counts = {b.label: 0 for b in (ContactMode.FREE, *self.branches)}
 

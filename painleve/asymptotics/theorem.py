@@ -166,7 +166,7 @@ def _enclosed(classification: Classification, evidence: Sequence[Evidence]) -> b
 
 def _least_slope(classification: Classification) -> float:
     limit = classification.limit
-    return LEAST_SLOPE_OF_ROOT if limit.critical and limit.state.scene.friction_dimension == 2 else LEAST_SLOPE
+    return LEAST_SLOPE_OF_ROOT if limit.critical and limit.state.scene.contact.section.dimension == 2 else LEAST_SLOPE
 
 
 def _middle_is_away(half: float, evidence: Evidence) -> bool:

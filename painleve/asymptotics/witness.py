@@ -247,7 +247,7 @@ def _slipping_member(problem: LocalProblem, dq: list[flint.arb], fraction: float
 
 def _in_space(problem: LocalProblem) -> bool:
     """Whether friction is in space."""
-    return problem.limit.state.scene.friction_dimension == 2
+    return problem.limit.state.scene.contact.section.dimension == 2
 
 
 def _path_over(problem: LocalProblem, dq: list[flint.arb], eps: float) -> Family | None:

@@ -41,11 +41,11 @@ def rows_of(derivation: Derivation) -> Rows:
     """The rows of a scene in their fixed order."""
     d, scene = derivation, derivation.scene
     axes = [c.name for c in scene.coordinates]
-    friction, k = scene.friction, scene.friction_dimension
+    friction, k = scene.contact.section, scene.contact.section.dimension
     parts = _common(d, axes)
     if isinstance(friction, Segment):
         parts |= _segment(d, axes, friction)
-    elif friction is not None:
+    elif friction.dimension:
         parts |= _space(d, axes)
     table = [entry for part in RowLayout._fields for entry in parts.get(part, [])]
     shape = {scene.q[i] for i in d.shape}
@@ -58,30 +58,31 @@ def rows_of(derivation: Derivation) -> Rows:
 
 
 def _common(d: Derivation, axes: Sequence[str]) -> dict[str, Entries]:
-    polygon = isinstance(d.scene.friction, Polygon)
+    polygon = isinstance(d.scene.contact.section, Polygon)
+    edge_plus = d.a if polygon or not d.edge_compliance else d.edge_compliance[1]
     return {
-        "g": [("g", d.scene.constraint)],
+        "g": [("g", d.scene.contact.constraint)],
         "w_n": _by_axis("w", axes, d.normal),
         "Y_n": _by_axis("Yn", axes, d.normal_response),
         "a": [("a", d.a)],
-        "edge_plus": [("edge_plus", d.a if polygon else d.edge_plus)],
+        "edge_plus": [("edge_plus", edge_plus)],
     }
 
 
 def _segment(d: Derivation, axes: Sequence[str], friction: Segment) -> dict[str, Entries]:
     return {
-        "H": _by_axis("H", axes, d.scene.tangents),
+        "H": _by_axis("H", axes, d.scene.contact.tangents),
         "Y_t": _by_axis("Yt", axes, d.tangent_response),
         "b": [("b", d.couplings[0])],
         "C": [("C", d.compliance[0])],
-        "section": [("edge_minus", d.edge_minus), ("mu_plus", friction.plus), ("mu_minus", friction.minus)],
+        "section": [("edge_minus", d.edge_compliance[-1]), ("mu_plus", friction.plus), ("mu_minus", friction.minus)],
     }
 
 
 def _space(d: Derivation, axes: Sequence[str]) -> dict[str, Entries]:
-    friction = d.scene.friction
-    E = sp.eye(2) if isinstance(friction, Polygon) else friction.map  # type: ignore[union-attr]
-    H, Y = d.scene.tangents * E, d.tangent_response * E
+    friction = d.scene.contact.section
+    E = sp.eye(2) if isinstance(friction, Polygon) else friction.map  # type: ignore[attr-defined]
+    H, Y = d.scene.contact.tangents * E, d.tangent_response * E
     b, C = E.T * d.couplings, E.T * d.compliance * E
     return {
         "H": [*_by_axis("H1", axes, H[:, 0]), *_by_axis("H2", axes, H[:, 1])],
@@ -93,7 +94,7 @@ def _space(d: Derivation, axes: Sequence[str]) -> dict[str, Entries]:
 
 
 def _polygon(d: Derivation, friction: Polygon) -> Iterator[tuple[str, sp.Expr]]:
-    yield from ((f"p_{i + 1}", d.edge_compliance(i + 1)) for i in range(len(friction.vertices)))
+    yield from ((f"p_{i + 1}", d.edge_compliance[i + 1]) for i in range(len(friction.vertices)))
     for i, vertex in enumerate(friction.vertices):
         yield from ((f"s_{k + 1}_{i + 1}", s) for k, s in enumerate(vertex))
 

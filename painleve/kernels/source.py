@@ -93,7 +93,7 @@ def scene_source(scene: Scene, rows: Rows, shape: Sequence[int]) -> str:
     varying = ", ".join(rows.names[r] for r in rows.varying) or "none"
     imports = space_imports(scene) or PLANAR_IMPORTS
     header = HEADER.format(name=scene.name, rows=", ".join(rows.names), varying=varying, law=imports)
-    planar = f"law_from_rows(rows, {scene.dimension}, {scene.friction is not None}, v, result)"
+    planar = f"law_from_rows(rows, {scene.dimension}, {scene.contact.section.dimension > 0}, v, result)"
     lane = LANE.format(
         dimension=scene.dimension,
         shape=len(shape),
@@ -150,14 +150,14 @@ def _law_block(scene: Scene, rows: Rows) -> str:
         "              branch, along, beyond, across2):\n"
     )
     loop = "    for i in range(branch.size):\n" + indent(inside, 2)
-    impulse = "" if scene.friction_dimension == 2 else "    base_n, base_t = impulse[0], impulse[1]\n"
+    impulse = "" if scene.contact.section.dimension == 2 else "    base_n, base_t = impulse[0], impulse[1]\n"
     return signature + impulse + indent(before, 1) + loop
 
 
 def _contact_lines(scene: Scene, names: Names, axes: Sequence[str]) -> list[str]:
-    if scene.friction is None:
+    if not scene.contact.section.dimension:
         return _frictionless_lines(names, axes)
-    return _planar_lines(names, axes) if scene.friction_dimension == 1 else space_lines(scene, names, axes)
+    return _planar_lines(names, axes) if scene.contact.section.dimension == 1 else space_lines(scene, names, axes)
 
 
 def _planar_lines(names: Names, axes: Sequence[str]) -> list[str]:

@@ -19,24 +19,25 @@ IMPULSES = (("Yn", "n"), ("Y1", "1"), ("Y2", "2"))
 
 def space_imports(scene: Scene) -> str | None:
     """What the law's lines call; None unless friction is in space."""
-    if scene.friction_dimension != 2:
+    if scene.contact.section.dimension != 2:
         return None
-    return POLYGON_IMPORTS if isinstance(scene.friction, Polygon) else CONIC_IMPORTS
+    return POLYGON_IMPORTS if isinstance(scene.contact.section, Polygon) else CONIC_IMPORTS
 
 
 def law_call(scene: Scene) -> str | None:
     """The call of S from a row table; None unless friction is in space."""
-    if scene.friction_dimension != 2:
+    if scene.contact.section.dimension != 2:
         return None
-    if isinstance(scene.friction, Polygon):
-        return f"polygon_law_from_rows(rows, {scene.dimension}, {len(scene.friction.vertices)}, v, result)"
+    if isinstance(scene.contact.section, Polygon):
+        return f"polygon_law_from_rows(rows, {scene.dimension}, {len(scene.contact.section.vertices)}, v, result)"
     return f"conic_law_from_rows(rows, {scene.dimension}, v, result)"
 
 
 def space_lines(scene: Scene, names: Names, axes: Sequence[str]) -> list[str]:
     """From v_n and `hit` to the code, tau and z of a sample (painleve.core.space.offset)."""
     lines = [f"dt_{k} = {velocity_difference(names, f'H{k}', axes)}" for k in (1, 2)]
-    lines += _polygon_call(scene.friction, names) if isinstance(scene.friction, Polygon) else _conic_call(names)
+    section = scene.contact.section
+    lines += _polygon_call(section, names) if isinstance(section, Polygon) else _conic_call(names)
     for j, x in enumerate(axes):
         moved = [f"d_{y}_{x}*impulse.jump_{i}" for y, i in IMPULSES if names.difference(f"{y}_{x}")]
         terms = [f"dv_{j}"] + ([f"tau*({total(moved)})"] if moved else [])

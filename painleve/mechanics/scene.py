@@ -1,4 +1,4 @@
-"""A scene as data: coordinates, inertia, force, one unilateral constraint and its friction, all symbolic.
+"""A scene as data: coordinates, inertia, force and contact, all symbolic.
 
 Conventions (paper, section 1): g(q) <= 0 is admissible, n = -grad g/|grad g| points inward, M du = f dt + r.
 """
@@ -13,7 +13,8 @@ from typing import Literal
 import sympy as sp
 
 from painleve.errors import InputError, nearest
-from painleve.mechanics.friction import Polygon, Section
+from painleve.mechanics.contact import Contact
+from painleve.mechanics.friction import NoFriction, Section
 
 __all__ = ["Coordinate", "NamedState", "Outline", "Parameter", "Scene", "StateKey", "make_scene"]
 
@@ -107,10 +108,10 @@ class Outline:
 class Scene:
     """A mechanical scene; build it with `make_scene`, which checks it.
 
-    `inertia` is M(q) (d x d); `force` is f(t, q, u) (d x 1), gyroscopic terms included; `constraint` is g(q);
-    `tangents` is H(q) (d x k); `placement`, `velocity` and `contact_parameters` say, in terms of the state keys
-    and the parameters, where the natural keys put q, u and those parameters that the contact fixes. `file` and `text`
-    are the name and the text of the file that it was read from, empty for a scene that was not.
+    `inertia` is M(q) (d x d); `force` is f(t, q, u) (d x 1), gyroscopic terms included; `contact` is where it touches;
+    `placement`, `velocity` and `contact_parameters` say, in terms of the state keys and the parameters, where the
+    natural keys put q, u and those parameters that the contact fixes. `file` and `text` are the name and the text of
+    the file that it was read from, empty for a scene that was not.
     """
 
     name: str
@@ -120,9 +121,7 @@ class Scene:
     parameters: tuple[Parameter, ...]
     inertia: sp.ImmutableMatrix
     force: sp.ImmutableMatrix
-    constraint: sp.Expr
-    tangents: sp.ImmutableMatrix
-    friction: Section | None
+    contact: Contact
     keys: tuple[StateKey, ...]
     placement: Mapping[str, sp.Expr]
     velocity: Mapping[str, sp.Expr]
@@ -152,10 +151,22 @@ class Scene:
     def dimension(self) -> int:
         return len(self.coordinates)
 
+    # Until the schemes read the contact themselves.
+    @property
+    def constraint(self) -> sp.Expr:
+        return self.contact.constraint
+
+    @property
+    def tangents(self) -> sp.ImmutableMatrix:
+        return self.contact.tangents
+
+    @property
+    def friction(self) -> Section | None:
+        return self.contact.section if self.friction_dimension else None
+
     @property
     def friction_dimension(self) -> int:
-        """k: 0 without friction, 1 in the plane, 2 in space."""
-        return self.tangents.shape[1]
+        return self.contact.section.dimension
 
     def parameter(self, name: str) -> Parameter:
         for parameter in self.parameters:
@@ -219,14 +230,14 @@ def make_scene(
     f = sp.ImmutableMatrix(_applied_force(name, potential, force, q) + gyroscopic_force(M, q, u))
     constraint = sp.sympify(constraint, strict=True)
     H = _tangents(name, tangential_displacements, tangents, q)
-    _check_friction(name, H, friction)
+    section = friction if friction is not None else NoFriction()
+    _check_friction(name, H, section)
     time = sp.Symbol("t", real=True)
     _check_symbols(name, "M", M, [*q, *p])
     _check_symbols(name, "f", f, [time, *q, *u, *p])
     _check_symbols(name, "g", sp.Matrix([constraint]), [*q, *p])
     _check_symbols(name, "H", H, [*q, *p])
-    if friction is not None:
-        _check_symbols(name, "the friction section", sp.Matrix(friction.expressions), [*q, *p])
+    _check_symbols(name, "the friction section", sp.Matrix(section.expressions), [*q, *p])
     if outline is not None:
         _check_symbols(name, "the outline", sp.Matrix(outline.points), [*q, *p])
         _check_symbols(name, "the floor of the outline", sp.Matrix([outline.floor]), p)
@@ -246,9 +257,7 @@ def make_scene(
         parameters=parameters,
         inertia=M,
         force=f,
-        constraint=constraint,
-        tangents=H,
-        friction=friction,
+        contact=Contact(constraint=constraint, tangents=H, section=section),
         keys=keys,
         placement=MappingProxyType(dict(rules[0])),
         velocity=MappingProxyType(dict(rules[1])),
@@ -330,16 +339,16 @@ def _check_targets(scene: str, rule: Mapping[str, sp.Expr], allowed: list[str]) 
         raise InputError(f"scene {scene}: a state key's rule gives {unknown}, which is not one of {', '.join(allowed)}")
 
 
-def _check_friction(scene: str, H: sp.MatrixBase, friction: Section | None) -> None:
-    k, wanted = H.shape[1], 0 if friction is None else friction.dimension
-    if k != wanted:
-        have = "no friction section" if friction is None else f"a {type(friction).__name__.lower()} as friction section"
+def _check_friction(scene: str, H: sp.MatrixBase, section: Section) -> None:
+    k = H.shape[1]
+    if k != section.dimension:
+        have = f"a {section.kind} as friction section" if section.dimension else "no friction section"
         raise InputError(
             f"scene {scene}: {k} tangential displacements with {have}; no friction needs none, "
-            "a segment one, a disc, an ellipse or a polygon two"
+            "a segment one, a section in space two"
         )
-    if isinstance(friction, Polygon) and len(friction.vertices) < 3:
-        raise InputError(f"scene {scene}: a friction polygon needs three vertices at least")
+    if section.flaw:
+        raise InputError(f"scene {scene}: {section.flaw}")
 
 
 def _check_symbols(scene: str, where: str, expressions: sp.MatrixBase, declared: list[sp.Symbol]) -> None:

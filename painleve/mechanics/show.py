@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import lru_cache
 
 import sympy as sp
@@ -11,11 +10,12 @@ import sympy as sp
 from painleve.errors import InputError
 from painleve.exact.parse import parse_expression
 from painleve.mechanics.derive import Derivation, derive
-from painleve.mechanics.friction import Disc, Ellipse, Polygon, Segment, norm
+from painleve.mechanics.formula import Formula
 from painleve.mechanics.scene import Coordinate, Parameter, Scene
 from painleve.mechanics.scene_file.work import TooMuchWork, limited_calls
+from painleve.mechanics.sections.section import norm
 
-__all__ = ["Line", "as_dict", "as_latex", "as_text", "derivation_lines"]
+__all__ = ["as_dict", "as_latex", "as_text", "derivation_lines"]
 
 MOST_CALLS = 15_000_000  # of Python functions, for a stranger's formulas
 
@@ -23,18 +23,7 @@ SHORT = 12  # operations of a formula that is left as it is
 LONG = 380  # and of one that is only factored: trigonometric identities would take seconds
 
 
-@dataclass(frozen=True, kw_only=True)
-class Line:
-    """One formula: how its left side is written plainly and in LaTeX, what it is, and the expression."""
-
-    name: str
-    plain: str
-    latex: str
-    sentence: str
-    expression: sp.Expr | sp.MatrixBase
-
-
-def derivation_lines(scene: Scene) -> list[Line]:
+def derivation_lines(scene: Scene) -> list[Formula]:
     """The formulas from M to the critical friction; simplifying takes up to some seconds.
 
     Raises InputError for a scene from a file whose formulas take too much work to simplify.
@@ -51,32 +40,32 @@ def derivation_lines(scene: Scene) -> list[Line]:
         ) from None
 
 
-def _mechanics(scene: Scene) -> Iterator[Line]:
+def _mechanics(scene: Scene) -> Iterator[Formula]:
     d = derive(scene)
     size = sp.sqrt(_short(d.gradient_squared))
-    yield Line(name="M", plain="M(q)", latex="M(q)", sentence="inertia", expression=scene.inertia.applyfunc(_short))
-    yield Line(
+    yield Formula(name="M", plain="M(q)", latex="M(q)", sentence="inertia", expression=scene.inertia.applyfunc(_short))
+    yield Formula(
         name="f",
         plain="f(t, q, u)",
         latex="f(t, q, u)",
         expression=scene.force.applyfunc(_short),
         sentence="force, gyroscopic terms included",
     )
-    yield Line(
+    yield Formula(
         name="g",
         plain="g(q)",
         latex="g(q)",
-        expression=_short(scene.constraint),
+        expression=_short(scene.contact.constraint),
         sentence="constraint: admissible where g <= 0, so the gap is -g",
     )
-    yield Line(
+    yield Formula(
         name="grad_g",
         plain="∇g(q)",
         latex=r"\nabla g(q)",
         sentence="gradient of the constraint",
         expression=(-d.normal).applyfunc(_short),
     )
-    yield Line(
+    yield Formula(
         name="n",
         plain="n(q)",
         latex="n(q)",
@@ -85,27 +74,28 @@ def _mechanics(scene: Scene) -> Iterator[Line]:
     )
 
 
-def _contact(scene: Scene) -> Iterator[Line]:
-    d = derive(scene)
-    if scene.friction is not None:
-        yield Line(
+def _contact(scene: Scene) -> Iterator[Formula]:
+    d, section = derive(scene), scene.contact.section
+    if section.dimension:
+        H = scene.contact.tangents.applyfunc(_short)
+        yield Formula(
             name="H",
             plain="H(q)",
             latex="H(q)",
-            expression=scene.tangents.applyfunc(_short),
+            expression=H,
             sentence="gradients of the contact point's tangential displacements, column by column",
         )
-        yield from _section(d)
-    yield Line(name="a", plain="a(q)", latex="a(q)", expression=_short(d.a), sentence="normal compliance, ∇g·M⁻¹∇g")
-    if scene.friction is not None:
-        yield Line(
+        yield from section.formulas(H, sp.sqrt(_short(d.gradient_squared)))
+    yield Formula(name="a", plain="a(q)", latex="a(q)", expression=_short(d.a), sentence="normal compliance, ∇g·M⁻¹∇g")
+    if section.dimension:
+        yield Formula(
             name="b",
             plain="b(q)",
             latex="b(q)",
             expression=_scalar(d.couplings.applyfunc(_short)),
             sentence="coupling of normal and tangent, -∇g·M⁻¹H",
         )
-        yield Line(
+        yield Formula(
             name="C",
             plain="C(q)",
             latex="C(q)",
@@ -115,49 +105,13 @@ def _contact(scene: Scene) -> Iterator[Line]:
     yield from _indicator(d)
 
 
-def _section(d: Derivation) -> Iterator[Line]:
-    friction = d.scene.friction
-    if not isinstance(friction, Segment):
-        yield from _section_in_space(friction)
-        return
-    size = sp.sqrt(_short(d.gradient_squared))
-    ends = [d.scene.tangents.applyfunc(_short) * s / size for s in (-friction.minus, friction.plus)]
-    yield Line(
-        name="D_1_minus",
-        plain="D₁(q) from",
-        latex=r"D_1^-(q)",
-        expression=ends[0],
-        sentence="the friction section is the segment H s/|∇g|, from its end s = -μ",
-    )
-    yield Line(name="D_1_plus", plain="D₁(q) to", latex=r"D_1^+(q)", expression=ends[1], sentence="to its end s = +μ")
-
-
-def _section_in_space(friction: Disc | Ellipse | Polygon | None) -> Iterator[Line]:
-    if isinstance(friction, Disc | Ellipse):
-        yield Line(
-            name="E",
-            plain="E(q)",
-            latex="E(q)",
-            expression=friction.map,
-            sentence="the friction section is {H E σ/|∇g| : |σ| ≤ 1}",
-        )
-    elif friction is not None:
-        yield Line(
-            name="vertices",
-            plain="vertices",
-            latex=r"\mathrm{vertices}",
-            expression=sp.Matrix(friction.vertices),
-            sentence="the friction section is {H s/|∇g|}, s in the polygon of these vertices",
-        )
-
-
 def _scalar(matrix: sp.MatrixBase) -> sp.Expr | sp.MatrixBase:
     """A 1 x 1 matrix as its entry."""
     return matrix[0] if matrix.shape == (1, 1) else matrix
 
 
-def _indicator(d: Derivation) -> Iterator[Line]:
-    yield Line(
+def _indicator(d: Derivation) -> Iterator[Formula]:
+    yield Formula(
         name="gamma",
         plain="γ(q)",
         latex=r"\gamma(q)",
@@ -165,7 +119,7 @@ def _indicator(d: Derivation) -> Iterator[Line]:
         sentence="least of <n, M⁻¹(n + w)> over D₁: negative in the paradox",
     )
     if d.critical_friction is not None:
-        yield Line(
+        yield Formula(
             name="critical_friction",
             plain="μ_c(q)",
             latex=r"\mu_c(q)",
@@ -175,7 +129,7 @@ def _indicator(d: Derivation) -> Iterator[Line]:
     defaults = dependent_defaults(d.scene)
     if defaults:
         given = ", ".join(f"{name} = {value}" for name, value in defaults.items())
-        yield Line(
+        yield Formula(
             name="gamma_default",
             plain="γ(q)",
             latex=r"\gamma(q)",
@@ -183,7 +137,7 @@ def _indicator(d: Derivation) -> Iterator[Line]:
             expression=_gamma(d, defaults),
         )
         if d.critical_friction is not None:
-            yield Line(
+            yield Formula(
                 name="critical_friction_default",
                 plain="μ_c(q)",
                 latex=r"\mu_c(q)",
@@ -200,17 +154,11 @@ def dependent_defaults(scene: Scene) -> dict[sp.Symbol, sp.Expr]:
 
 
 def _gamma(d: Derivation, values: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
-    squared = _short(d.gradient_squared.xreplace(values))
-    friction = d.scene.friction
-    a = _short(d.a.xreplace(values))
-    if friction is None:
-        return a / squared
-    if isinstance(friction, Segment) and friction.plus == friction.minus:
-        return (a - friction.plus.xreplace(values) * _absolute(_short(d.couplings[0].xreplace(values)))) / squared
-    if isinstance(friction, Segment):
-        assert d.edge_minus is not None
-        return sp.Min(_short(d.edge_plus.xreplace(values)), _short(d.edge_minus.xreplace(values))) / squared
-    return (a - _short((d.a - d.edge_plus).xreplace(values))) / squared
+    def short(expression: sp.Expr) -> sp.Expr:
+        return _short(expression.xreplace(values))
+
+    section = d.scene.contact.section
+    return section.shown_compliance(d.a, d.couplings, short) / short(d.gradient_squared)
 
 
 def _critical(d: Derivation, values: dict[sp.Symbol, sp.Expr]) -> sp.Expr:

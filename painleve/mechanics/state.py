@@ -237,19 +237,20 @@ def _check(state: State) -> None:
             raise InputError(f"{where}: M is not positive definite there; choose another configuration")
     if exact_sign(state.exact(d.gradient_squared)).sign is not Sign.POSITIVE:
         raise InputError(f"{where}: grad g vanishes there; choose another configuration")
-    if scene.friction is not None:
+    section = scene.contact.section
+    if section.dimension:
         if exact_sign(state.exact(d.delassus).det(method="berkowitz")).sign is not Sign.POSITIVE:
             raise InputError(
                 f"{where}: the tangential displacements do not vary independently of g there (H3); "
                 "choose another configuration"
             )
-        for condition in scene.friction.conditions:
+        for condition in section.conditions:
             if exact_sign(state.exact(condition.expression)).sign not in (Sign.POSITIVE, Sign.ZERO):
                 raise InputError(
                     f"{where}: {condition.sentence} is {state.number(condition.expression):.6g} there; "
                     "it must be zero or positive"
                 )
-    _check_zero(where, "g(q)", state.exact(scene.constraint), "the state is off the constraint")
+    _check_zero(where, "g(q)", state.exact(scene.contact.constraint), "the state is off the constraint")
     v_n = (d.normal.T * sp.Matrix(scene.u))[0, 0]
     _check_zero(where, "<u-, -grad g(q)>", state.exact(v_n), "the velocity is not tangential")
 

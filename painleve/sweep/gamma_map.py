@@ -146,7 +146,7 @@ def _follow(kernels: Kernels, state: State, values: np.ndarray) -> _Path:
                 break
             table[i] = rows
     a, squared = table[:, index("a")], np.sum(table[:, 1 : 1 + kernels.scene.dimension] ** 2, axis=1)
-    if kernels.scene.friction_dimension == 2:  # the rows have a disc as the unit disc
+    if kernels.scene.contact.section.dimension == 2:  # the rows have a disc as the unit disc
         friction = _coefficients(kernels, state, values)
         return _Path(a=a, b=(a - table[:, index("edge_plus")]) / friction, squared=squared, friction=friction)
     return _Path(a=a, b=np.abs(table[:, index("b")]), squared=squared, friction=table[:, index("mu_plus")])
@@ -155,7 +155,7 @@ def _follow(kernels: Kernels, state: State, values: np.ndarray) -> _Path:
 def _coefficients(kernels: Kernels, state: State, values: np.ndarray) -> np.ndarray:
     """The disc's coefficient of friction along the path."""
     scene, index = kernels.scene, kernels.derivation.shape[0]
-    mu = scene.friction.mu.xreplace({s: x for s, x in state.substitution.items() if s != scene.q[index]})  # type: ignore[union-attr]
+    mu = scene.contact.section.mu.xreplace({s: x for s, x in state.substitution.items() if s != scene.q[index]})  # type: ignore[attr-defined]
     return np.array([float(mu.xreplace({scene.q[index]: sp.Float(x)})) for x in values])
 
 

@@ -42,7 +42,7 @@ def map_regimes(
 
     Raises InputError for a scene without friction, and unless two different state keys are given.
     """
-    if scene.friction_dimension != 1:
+    if scene.contact.section.dimension != 1:
         raise InputError(f"scene {scene.name}: these regimes are those of friction in the plane")
     names, known = tuple(axes), [k.name for k in scene.keys]
     if len(names) != 2 or not set(names) <= set(known):
@@ -74,13 +74,13 @@ def _evaluate(
 ) -> tuple[np.ndarray, np.ndarray]:
     """(p, beta) on the grid of the two axes."""
     derivation, velocity = derive(scene), sp.Matrix(scene.u)
-    slip = (scene.tangents.T * velocity)[0, 0]
-    curvature = (velocity.T * sp.hessian(scene.constraint, scene.q) * velocity)[0, 0]
+    slip = (scene.contact.tangents.T * velocity)[0, 0]
+    curvature = (velocity.T * sp.hessian(scene.contact.constraint, scene.q) * velocity)[0, 0]
     beta = (derivation.normal_response.T * scene.force)[0, 0] - curvature
     placed = _placed(scene, axes, keys, parameters)
     symbols = [k.symbol for k in scene.keys if k.name in axes]
     symbols.sort(key=lambda s: list(axes).index(s.name))
-    wanted = [derivation.edge_plus, derivation.edge_minus, slip, beta]
+    wanted = [derivation.edge_compliance[1], derivation.edge_compliance[-1], slip, beta]
     function = sp.lambdify(symbols, [placed(e) for e in wanted], "numpy", dummify=True)
     mesh = np.meshgrid(*(np.asarray(axes[s.name], float) for s in symbols), indexing="ij")
     plus, minus, sense, acceleration = (np.broadcast_to(value, mesh[0].shape) for value in function(*mesh))

@@ -221,9 +221,9 @@ def _extremum(curve: StateCurve, zero: Zero) -> CriticalState | None:
 
 def _coefficient(curve: StateCurve) -> str | None:
     """The parameter that is the coefficient of friction and nothing else, if there is one."""
-    assert curve.scene.friction is not None
-    value = curve.scene.friction.expressions[0]
-    elsewhere = set().union(*(x.free_symbols for x in (curve.a, *curve.b, curve.scene.constraint)))
+    assert curve.scene.contact.section.dimension
+    value = curve.scene.contact.section.expressions[0]
+    elsewhere = set().union(*(x.free_symbols for x in (curve.a, *curve.b, curve.scene.contact.constraint)))
     return next((p.name for p in curve.scene.parameters if p.symbol == value and value not in elsewhere), None)
 
 
@@ -253,7 +253,7 @@ def _kind_of_maximum(
     fixed = curve.rules | {mu: mu}
     coupling = curve.value(curve.coupling(), place)
     edge = -1 if len(curve.b) == 1 and coupling > 0 else 1
-    p, g = smooth_indicator(scene, edge), scene.constraint
+    p, g = smooth_indicator(scene, edge), scene.contact.constraint
     used = [x for x in scene.q if x in p.free_symbols]
     if len(used) == 1 and _moves(curve, used[0], place):
         return Neighbourhood.ISOLATED, f"gamma depends on {used[0]} alone, and is negative on both sides"

@@ -14,7 +14,6 @@ from painleve.exact.parse import exact_number, parse_expression
 from painleve.exact.signs import Sign, exact_sign
 from painleve.exact.zeros import Zero, ZeroStatus, find_zeros
 from painleve.mechanics.derive import derive
-from painleve.mechanics.friction import Disc, Polygon, Segment
 from painleve.mechanics.scene import Scene, StateKey
 from painleve.mechanics.state import Number, State, make_curve, make_state
 from painleve.theory.neighbourhood import smooth_indicator
@@ -35,7 +34,7 @@ class StateCurve:
         low: Number | None,
         high: Number | None,
     ) -> None:
-        if scene.friction is None:
+        if not scene.contact.section.dimension:
             raise InputError(f"scene {scene.name} has no friction: gamma is positive and mu_c infinite everywhere")
         self.scene, self.along, self.name, self.keys, self.parameters = scene, along, name, keys, parameters
         self.rules = make_curve(scene, along, name, keys=keys, parameters=parameters)
@@ -43,14 +42,10 @@ class StateCurve:
         self.variable = self.key.symbol
         self.low, self.high = self._interval(low, high)
         self.derivation, self.outside = derive(scene), list[arb]()
-        self.edges = (
-            range(1, 1 + len(scene.friction.vertices))
-            if isinstance(scene.friction, Polygon)
-            else ((1, -1) if isinstance(scene.friction, Segment) else (1,))
-        )
-        adjugate = scene.inertia.adjugate()
+        self.edges = scene.contact.section.edges
+        adjugate, H = scene.inertia.adjugate(), scene.contact.tangents
         w = self.derivation.normal
-        self.a, self.b = (w.T * adjugate * w)[0, 0], scene.tangents.T * adjugate * w  # times det(M), as the indicator
+        self.a, self.b = (w.T * adjugate * w)[0, 0], H.T * adjugate * w  # times det(M), as the indicator
         self._check_variation()
 
     def _interval(self, low: Number | None, high: Number | None) -> tuple[sp.Expr, sp.Expr]:
@@ -93,8 +88,7 @@ class StateCurve:
 
     def stationarity(self) -> tuple[sp.Expr | None, str]:
         """A function that vanishes where mu_c is stationary, with the sign of its slope; None and why there is none."""
-        friction = self.scene.friction
-        if self.derivation.critical_friction is None or not isinstance(friction, Segment | Disc):
+        if self.derivation.critical_friction is None:
             return None, "mu_c is defined for a symmetric segment or a disc alone"
         a, b = self.on(self.a), [self.on(x) for x in self.b]
         s = self.variable

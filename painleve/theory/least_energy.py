@@ -33,14 +33,14 @@ class LeastEnergy:
 
 def least_edge(state: State) -> tuple[int, Signed]:
     """The edge of the cone on which gamma is attained, and the sign of gamma, which is that of its compliance."""
-    d, friction = derive(state.scene), state.scene.friction
+    d, friction = derive(state.scene), state.scene.contact.section
     if isinstance(friction, Segment):
         edges = [1, -1]
     elif isinstance(friction, Polygon):
         edges = _extreme_vertices(state, d, friction)
     else:
         return 1, _conic_sign(state, d)
-    signs = {edge: exact_sign(state.exact(d.edge_compliance(edge))) for edge in edges}
+    signs = {edge: exact_sign(state.exact(d.edge_compliance[edge])) for edge in edges}
     order = (Sign.NEGATIVE, Sign.UNDECIDED, Sign.ZERO, Sign.POSITIVE)
     edge = min(signs, key=lambda e: order.index(signs[e].sign))
     return edge, signs[edge]
@@ -48,14 +48,14 @@ def least_edge(state: State) -> tuple[int, Signed]:
 
 def _extreme_vertices(state: State, d: Derivation, friction: Polygon) -> list[int]:
     """The vertices with the least compliance: what floats cannot tell from the least."""
-    values = [state.number(d.edge_compliance(i + 1)) for i in range(len(friction.vertices))]
+    values = [state.number(d.edge_compliance[i + 1]) for i in range(len(friction.vertices))]
     near = 1e-9 * max(abs(state.number(d.a)), *(abs(value) for value in values))
     return [i + 1 for i, value in enumerate(values) if value <= min(values) + near]
 
 
 def _conic_sign(state: State, d: Derivation) -> Signed:
     """Of a - |E^T b|, by the square, which has no root in it."""
-    opposed = d.scene.friction.map.T * d.couplings  # type: ignore[union-attr]
+    opposed = d.scene.contact.section.map.T * d.couplings  # type: ignore[attr-defined]
     return exact_sign(state.exact(d.a**2 - (opposed.T * opposed)[0, 0]))
 
 
@@ -63,8 +63,8 @@ def least_energy(state: State, edge: int, gamma: Sign) -> LeastEnergy:
     """The jump at a state with gamma(q) <= 0 attained on that edge."""
     d = derive(state.scene)
     # Numbers from here on: of matrices of formulas a determinant may take minutes.
-    slip = state.exact(state.scene.tangents).T * sp.Matrix(state.u)
-    if state.scene.friction_dimension == 1:
+    slip = state.exact(state.scene.contact.tangents).T * sp.Matrix(state.u)
+    if state.scene.contact.section.dimension == 1:
         return _planar(state, d, slip[0])
     if gamma is Sign.ZERO:
         return _along_ray(state, d, slip, edge)
@@ -85,9 +85,9 @@ def _planar(state: State, d: Derivation, slip: sp.Expr) -> LeastEnergy:
 
 def _along_ray(state: State, d: Derivation, slip: sp.MatrixBase, edge: int) -> LeastEnergy:
     """gamma = 0 in space: one ray, if the section touches the line a + b.s = 0 in one point."""
-    if isinstance(state.scene.friction, Polygon):
-        others = [i for i in _extreme_vertices(state, d, state.scene.friction) if i != edge]
-        if any(exact_sign(state.exact(d.edge_compliance(i))).sign is not Sign.POSITIVE for i in others):
+    if isinstance(state.scene.contact.section, Polygon):
+        others = [i for i in _extreme_vertices(state, d, state.scene.contact.section) if i != edge]
+        if any(exact_sign(state.exact(d.edge_compliance[i])).sign is not Sign.POSITIVE for i in others):
             return LeastEnergy(
                 undecided="gamma = 0 on a whole edge of the friction polygon (neither H4 nor "
                 "H'4 holds): the ray of impulses is not unique, and nothing is claimed"
@@ -150,7 +150,7 @@ def _in_cone(state: State, d: Derivation, normal: sp.Expr, r_t: sp.MatrixBase) -
     lifts = exact_sign(normal).sign
     if lifts in (Sign.NEGATIVE, Sign.ZERO):
         return Sign.NEGATIVE
-    inside = d.scene.friction.membership(r_t / normal)  # type: ignore[union-attr]
+    inside = d.scene.contact.section.membership(r_t / normal)
     sides = [exact_sign(state.exact(x)).sign for x in inside]
     if Sign.NEGATIVE in sides:
         return Sign.NEGATIVE

@@ -104,7 +104,7 @@ def limit_set(state: State, law: str = "projection") -> LimitSet | CoulombLimitS
 
 def _projected(state: State) -> LimitSet:
     d, scene = derive(state.scene), state.scene
-    if scene.friction is None:
+    if not scene.contact.section.dimension:
         return _limit(state, "point", exact_sign(state.exact(d.gamma)), 0, None, "without friction gamma is positive")
     edge, gamma = least_edge(state)
     if gamma.sign is Sign.POSITIVE:
@@ -132,7 +132,7 @@ def _limit(
     reason: str,
     after: str = "",
 ) -> LimitSet:
-    d, k = derive(state.scene), state.scene.friction_dimension
+    d, k = derive(state.scene), state.scene.contact.section.dimension
     u_tilde, exact = state.u, (sp.Integer(0),) * (1 + k)
     if impulse is not None:
         exact = tuple(state.exact(r) for r in impulse)

@@ -17,8 +17,9 @@ import sympy as sp
 
 from painleve.exact.signs import Sign, Signed, exact_sign
 from painleve.mechanics.derive import derive
-from painleve.mechanics.friction import Polygon, Segment, norm
+from painleve.mechanics.friction import Polygon, Segment
 from painleve.mechanics.scene import Scene
+from painleve.mechanics.sections.section import norm
 from painleve.mechanics.state import State
 
 __all__ = ["Neighbourhood", "Neighbours", "neighbours", "smooth_indicator"]
@@ -48,7 +49,7 @@ class Neighbours:
 def neighbours(state: State, edge: int) -> Neighbours:
     """The kind of a state with gamma(q) = 0, attained on that edge of the cone (Derivation.edge_direction)."""
     scene = state.scene
-    p, g = smooth_indicator(state.scene, edge), scene.constraint
+    p, g = smooth_indicator(state.scene, edge), scene.contact.constraint
     if p.has(sp.Abs, sp.Min, sp.Max, sp.sign, sp.Piecewise):
         return Neighbours(kind=Neighbourhood.UNDECIDED, reason="gamma is not smooth: no Taylor expansion decides")
     used = [x for x in scene.q if x in p.free_symbols or x in g.free_symbols]
@@ -75,13 +76,14 @@ def smooth_indicator(scene: Scene, edge: int) -> sp.Expr:
     disc to the section), which has no root in it.
     """
     d = derive(scene)
-    friction, adjugate = scene.friction, scene.inertia.adjugate()
-    assert friction is not None  # without friction gamma > 0
+    friction, adjugate = scene.contact.section, scene.inertia.adjugate()
+    assert friction.dimension  # without friction gamma > 0
     if isinstance(friction, Segment | Polygon):
-        along = scene.tangents * d.edge_direction(edge)
+        along = scene.contact.tangents * d.edge_direction(edge)
         return (d.normal.T * adjugate * (d.normal + along))[0, 0]
     a = (d.normal.T * adjugate * d.normal)[0, 0]
-    return a**2 - norm(friction.map.T * scene.tangents.T * adjugate * d.normal) ** 2
+    E = friction.map  # type: ignore[attr-defined]
+    return a**2 - norm(E.T * scene.contact.tangents.T * adjugate * d.normal) ** 2
 
 
 def _approached(reason: str) -> Neighbours:
@@ -107,7 +109,7 @@ def _along_the_constraint(
     """kappa > 0: the form of p + kappa g on the tangent directions decides."""
     m = next(i for i, x in enumerate(grad_g) if exact_sign(x).sign in (Sign.POSITIVE, Sign.NEGATIVE))
     kappa = -grad_p[m] / grad_g[m]
-    form = state.exact(sp.hessian(p, used)) + kappa * state.exact(sp.hessian(state.scene.constraint, used))
+    form = state.exact(sp.hessian(p, used)) + kappa * state.exact(sp.hessian(state.scene.contact.constraint, used))
     others = [i for i in range(len(used)) if i != m]
     # Tangent vectors e_i - (g_i/g_m) e_m span the kernel of grad g.
     basis = sp.zeros(len(used), len(others))
@@ -149,7 +151,7 @@ def _minor(form: sp.MatrixBase, chosen: Sequence[int]) -> Signed:
 
 def _one_coordinate(state: State, p: sp.Expr, x: sp.Symbol) -> Neighbours:
     """gamma depends on x alone: its first derivative that does not vanish decides, on the sides that g allows."""
-    others = [exact_sign(state.exact(sp.diff(state.scene.constraint, y))).sign for y in state.scene.q if y != x]
+    others = [exact_sign(state.exact(sp.diff(state.scene.contact.constraint, y))).sign for y in state.scene.q if y != x]
     both_sides = any(sign in (Sign.POSITIVE, Sign.NEGATIVE) for sign in others)
     for order in range(3, HIGHEST_ORDER + 1):
         sign = exact_sign(state.exact(sp.diff(p, x, order))).sign

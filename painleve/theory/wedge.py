@@ -15,7 +15,7 @@ __all__ = ["wedge"]
 def wedge(state: State, d: Derivation) -> tuple[sp.MatrixBase, sp.MatrixBase] | None:
     """(s_1, s_2), s_2 counterclockwise of s_1 by less than a half turn: the impulses that keep the tip's normal
     velocity lie between these rays. None where a sign at a polygon's vertex is undecided."""
-    friction = d.scene.friction
+    friction = d.scene.contact.section
     if isinstance(friction, Disc | Ellipse):
         return _conic(state, d, friction)
     assert isinstance(friction, Polygon)
@@ -36,7 +36,7 @@ def _conic(state: State, d: Derivation, friction: Disc | Ellipse) -> tuple[sp.Ma
 
 def _polygon(state: State, d: Derivation, friction: Polygon) -> tuple[sp.MatrixBase, sp.MatrixBase] | None:
     n, corners = len(friction.vertices), [state.exact(sp.Matrix(v)) for v in friction.vertices]
-    compliances = [state.exact(d.edge_compliance(i + 1)) for i in range(n)]
+    compliances = [state.exact(d.edge_compliance[i + 1]) for i in range(n)]
     signs = [exact_sign(p).sign for p in compliances]
     if Sign.UNDECIDED in signs:
         return None

@@ -121,7 +121,7 @@ def uniform_ball(random: np.random.Generator, n: int, d: int, eps: float) -> np.
 @lru_cache(maxsize=16)
 def _rows(scene: Scene) -> Callable[[np.ndarray, list[float]], np.ndarray]:
     """The scene's rows (rows, n) at configurations (d, n), by lambdify."""
-    if scene.friction is None:
+    if not scene.contact.section.dimension:
         raise InputError(f"scene {scene.name}: the naive baseline is written for planar friction; choose another scene")
     expressions = rows_of(derive(scene)).expressions
     function = sp.lambdify([*scene.q, *scene.p], expressions, "numpy", cse=True)

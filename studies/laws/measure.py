@@ -39,7 +39,7 @@ def map_laws(
     Raises InputError for states that are not of one scene with a disc of friction, or where b = 0, and for bad numbers.
     """
     scenes = {state.scene for state in states}
-    if len(scenes) != 1 or not all(isinstance(scene.friction, Disc) for scene in scenes):
+    if len(scenes) != 1 or not all(isinstance(scene.contact.section, Disc) for scene in scenes):
         raise InputError("two laws: give states of one scene whose section of friction is a disc")
     if not (len(approaches) and len(frictions)) or max(approaches) > 0.0 or min(frictions) <= 0.0 or directions < 3:
         raise InputError("two laws: give approaches v_n <= 0, coefficients of friction > 0 and 3 directions or more")

@@ -52,8 +52,8 @@ def _functions() -> tuple:
     scene = load_scene("slender_rod")
     fixed = {scene.parameter(name).symbol: sp.Integer(1) for name in ("m", "l")}
     fixed |= {scene.parameter("gravity").symbol: sp.Rational(981, 100)}
-    W = sp.Matrix.hstack(-sp.Matrix([scene.constraint]).jacobian(scene.q).T, scene.tangents)
-    parts = (scene.inertia, scene.force, W, sp.hessian(scene.constraint, scene.q), derive(scene).gamma)
+    W = sp.Matrix.hstack(-sp.Matrix([scene.contact.constraint]).jacobian(scene.q).T, scene.contact.tangents)
+    parts = (scene.inertia, scene.force, W, sp.hessian(scene.contact.constraint, scene.q), derive(scene).gamma)
     arguments = [scene.q[2], scene.u[2], scene.parameter("I").symbol, scene.parameter("mu").symbol]
     return tuple(sp.lambdify(arguments, part.xreplace(fixed), "numpy") for part in parts)
 

@@ -49,9 +49,9 @@ def derive_slip() -> SlipMotion:
     names = {p.symbol: values[p.name] for p in scene.parameters}
     names |= {scene.q[2]: theta, scene.u[2]: omega}
     accelerations, force = sp.symbols("a_0:3"), sp.Symbol("F")
-    g = sp.Matrix([scene.constraint])
+    g = sp.Matrix([scene.contact.constraint])
     w_n, u, du = -g.jacobian(scene.q).T, sp.Matrix(scene.u), sp.Matrix(accelerations)
-    balance = scene.inertia * du - scene.force - (w_n + scene.tangents * scene.parameter("mu").symbol) * force
+    balance = scene.inertia * du - scene.force - (w_n + scene.contact.tangents * scene.parameter("mu").symbol) * force
     closed = (w_n.T * du + u.T * w_n.jacobian(scene.q) * u)[0, 0]
     (solution,) = sp.solve([e.xreplace(names) for e in (*balance, closed)], [*accelerations, force], dict=True)
     push, edge = sp.fraction(sp.factor(solution[force]))

@@ -114,7 +114,7 @@ class _Forms:
     def __init__(self, problem: LocalProblem, eps: float) -> None:
         self.eps, self.variables = eps, len(problem.shape)
         scene, limit = problem.kernels.scene, problem.limit
-        expressions = [smooth_indicator(scene, limit.edge), scene.constraint]
+        expressions = [smooth_indicator(scene, limit.edge), scene.contact.constraint]
         variables = [scene.q[i] for i in problem.shape]
         q, p, _ = base_balls(problem)
         point = dict(zip(scene.q, q, strict=True)) | dict(zip([x.symbol for x in scene.parameters], p, strict=True))

@@ -76,7 +76,7 @@ def certify_distance(limit: LimitSet, eps: float, options: CertifyOptions | None
     options, eps = options or CertifyOptions(), check_eps(eps)
     if limit.kind == "undecided":
         raise InputError(f"state {limit.state.label}: no distance to a limit set that is undecided: {limit.reason}")
-    if limit.state.scene.friction_dimension == 2:
+    if limit.state.scene.contact.section.dimension == 2:
         raise InputError(
             f"certify: scene {limit.state.scene.name} has friction in space, which this method does not "
             "search; use the methods sample or optimise"

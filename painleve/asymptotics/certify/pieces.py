@@ -89,11 +89,12 @@ class _Build:
         self.inverse_eps = 1 / flint.arb(float(eps))
         scene, derivation, d = problem.kernels.scene, problem.kernels.derivation, self.d
         adjugate = scene.inertia.adjugate()  # expanded before it is divided by det M: remainders stay small
-        expressions = [scene.constraint, scene.inertia.det(method="berkowitz"), *derivation.normal]
+        expressions = [scene.contact.constraint, scene.inertia.det(method="berkowitz"), *derivation.normal]
         expressions += [*(adjugate * derivation.normal)]
-        self.planar = isinstance(scene.friction, Segment)
-        if isinstance(scene.friction, Segment):
-            expressions += [*scene.tangents, *(adjugate * scene.tangents), scene.friction.plus, scene.friction.minus]
+        H, section = scene.contact.tangents, scene.contact.section
+        self.planar = isinstance(section, Segment)
+        if isinstance(section, Segment):
+            expressions += [*H, *(adjugate * H), section.plus, section.minus]
         found = expand(problem, eps, expressions, taylor_order(len(problem.shape), eps))
         inverse = found[1].reciprocal()
         self.zero = found[0].scale(flint.arb(0))

@@ -30,7 +30,7 @@ def space_base(limit: LimitSet, bits: int) -> SpaceBase | PolygonBase:
     Raises InputError where the section has no area at q: there the tip's sticking impulse is not one of the disc's.
     """
     state, d = limit.state, derive(limit.state.scene)
-    if isinstance(d.scene.friction, Polygon):
+    if isinstance(d.scene.contact.section, Polygon):
         return _polygon_base(limit, bits)
     E, inverse = _map(state, d)
     number = partial(_number, state, bits)
@@ -58,12 +58,12 @@ def space_base(limit: LimitSet, bits: int) -> SpaceBase | PolygonBase:
 
 
 def _slip(state: State) -> sp.MatrixBase:
-    return state.exact(state.scene.tangents).T * sp.Matrix(state.u)
+    return state.exact(state.scene.contact.tangents).T * sp.Matrix(state.u)
 
 
 def _map(state: State, d: Derivation) -> tuple[sp.MatrixBase, sp.MatrixBase]:
     """E of the section E times the unit disc, and its inverse."""
-    E = state.exact(d.scene.friction.map)  # type: ignore[union-attr]
+    E = state.exact(d.scene.contact.section.map)  # type: ignore[attr-defined]
     if exact_sign(E[0, 0] * E[1, 1] - E[0, 1] * E[1, 0]).sign is not Sign.POSITIVE:
         raise InputError(
             f"state {state.label}: a coefficient of friction vanishes; the friction section must have an "
@@ -98,7 +98,7 @@ def _polygon_base(limit: LimitSet, bits: int) -> PolygonBase:
 
 def _edge_of_jump(limit: LimitSet, number: Callable[[sp.Expr], float]) -> tuple[int, int, float, float]:
     """The two vertices (from 0) between which the jump's impulse lies, and how it is made of them; -1: of no two."""
-    vertices = [sp.Matrix(v) for v in limit.state.scene.friction.vertices]  # type: ignore[union-attr]
+    vertices = [sp.Matrix(v) for v in limit.state.scene.contact.section.vertices]  # type: ignore[attr-defined]
     if limit.kind == "segment":
         return limit.edge - 1, limit.edge - 1, number(limit.multiplier), 0.0
     jump = sp.Matrix(limit.tangential)

@@ -230,7 +230,7 @@ def charts_of(ball: SpaceBall) -> list[SpaceChart]:
     found: list[SpaceChart] = [Whole(ball)]
     if ball.problem.critical_edge and ball.problem.length > 0.0:
         found += [Along(ball)]
-    if not isinstance(ball.problem.limit.state.scene.friction, Polygon):
+    if not isinstance(ball.problem.limit.state.scene.contact.section, Polygon):
         found.append(Sticking(ball))
     return found
 

@@ -71,7 +71,7 @@ def _off_the_line(problem: LocalProblem, dq: Balls, reach: float) -> flint.arb:
     p = rows[names.edge(problem.limit.edge)]
     most = flint.arb(reach) * problem.exact_multiplier
     Y_n, (Y_1, Y_2) = rows[parts.Y_n], [rows[part] for part in parts.Y_t]
-    friction = problem.limit.state.scene.friction
+    friction = problem.limit.state.scene.contact.section
     if isinstance(friction, Polygon):
         corners = [
             (rows[names.index(f"s_1_{i}")], rows[names.index(f"s_2_{i}")]) for i in range(1, 1 + len(friction.vertices))

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from types import MappingProxyType
+from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import sympy as sp
 
-from painleve.mechanics.friction import Disc, Ellipse, Polygon, Section, Segment
+from painleve.mechanics.friction import SECTIONS, NoFriction, Section
 from painleve.mechanics.scene_file.fields import Field
 from painleve.mechanics.scene_file.work import terms_of
 
 __all__ = ["read_contact", "read_motion"]
 
 MOST_TERMS = 2000  # of an expanded formula
-MOST_DIRECTIONS, MOST_VERTICES = 2, 16  # of friction
+MOST_DIRECTIONS = max(section.dimension for section in SECTIONS)  # of friction
 
 Symbols = Mapping[str, sp.Expr]
 
@@ -107,10 +107,10 @@ def read_contact(field: Field, friction: Field | None, q: Symbols, p: Symbols) -
         raise given.refuse("this does not depend on any coordinate")
     displacements = fields.get("tangential_displacements")
     formulas = [smooth(part, {**q, **p}) for part in _one_or_more(displacements)] if displacements is not None else []
-    section = _section(friction, {**q, **p}) if friction is not None else None
-    directions = 0 if section is None else section.dimension
+    section = _section(friction, {**q, **p}) if friction is not None else NoFriction()
+    directions = section.dimension
     if len(formulas) != directions:
-        kind = "without friction" if section is None else f"where friction is a {type(section).__name__.lower()}"
+        kind = f"where friction is a {section.kind}" if directions else "without friction"
         raise (displacements or field).refuse(
             f"there {'is' if len(formulas) == 1 else 'are'} {len(formulas) or 'no'} tangential displacement"
             f"{'s' * (len(formulas) != 1)}; {kind} the contact needs {directions or 'none'}"
@@ -126,51 +126,8 @@ def _one_or_more(field: Field) -> list[Field]:
     return field.array(MOST_DIRECTIONS, what="displacements") if isinstance(field.value, list) else [field]
 
 
-def _section(field: Field, known: Symbols) -> Section | None:
+def _section(field: Field, known: Symbols) -> Section:
     """The friction section; its coefficients may depend on q."""
-    kind = field.table(("kind",), _COEFFICIENTS)["kind"].choice(tuple(_SECTIONS))
-    return _SECTIONS[kind](field, known)
-
-
-def _none(field: Field, known: Symbols) -> None:
-    field.table(("kind",))
-
-
-def _segment(field: Field, known: Symbols) -> Segment:
-    """`mu`, or `minus` and `plus`."""
-    if "mu" in field.table(("kind",), _COEFFICIENTS):
-        (mu,) = _coefficients(field, known, "mu")
-        return Segment(minus=mu, plus=mu)
-    if not {"minus", "plus"} & set(field.table(("kind",), _COEFFICIENTS)):
-        raise field.refuse("mu, or minus and plus, are missing")
-    minus, plus = _coefficients(field, known, "minus", "plus")
-    return Segment(minus=minus, plus=plus)
-
-
-def _disc(field: Field, known: Symbols) -> Disc:
-    (mu,) = _coefficients(field, known, "mu")
-    return Disc(mu=mu)
-
-
-def _ellipse(field: Field, known: Symbols) -> Ellipse:
-    mu_1, mu_2, angle = _coefficients(field, known, "mu_1", "mu_2", "angle")
-    return Ellipse(mu_1=mu_1, mu_2=mu_2, angle=angle)
-
-
-def _polygon(field: Field, known: Symbols) -> Polygon:
-    listed = field.table(("kind", "vertices"))["vertices"].array(MOST_VERTICES, what="vertices")
-    if len(listed) < 3:
-        raise listed[0].refuse("a polygon needs at least three vertices")
-    pairs = [vertex.array(2, length=2, what="components") for vertex in listed]
-    return Polygon(vertices=tuple((smooth(x, known), smooth(y, known)) for x, y in pairs))
-
-
-def _coefficients(field: Field, known: Symbols, *names: str) -> list[sp.Expr]:
-    fields = field.table(("kind", *names))
-    return [smooth(fields[name], known) for name in names]
-
-
-_SECTIONS: Mapping[str, Callable[[Field, Symbols], Section | None]] = MappingProxyType(
-    {"none": _none, "segment": _segment, "disc": _disc, "ellipse": _ellipse, "polygon": _polygon}
-)
-_COEFFICIENTS = ("mu", "minus", "plus", "mu_1", "mu_2", "angle", "vertices")
+    kinds = {section.kind: section for section in SECTIONS}
+    given = field.table(("kind",), dict.fromkeys(name for section in SECTIONS for name in section.fields))
+    return kinds[given["kind"].choice(tuple(kinds))].read(field, given, partial(smooth, known=known))

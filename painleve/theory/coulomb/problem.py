@@ -112,7 +112,7 @@ def _evaluate(scene: Scene, point: Mapping[sp.Symbol, sp.Expr], v: sp.ImmutableM
     M = exact(scene.inertia)
     if any(not _positive(M[:n, :n]) for n in range(1, scene.dimension + 1)):
         raise InputError(f"scene {scene.name}: M is not positive definite at this q; choose another configuration")
-    W = exact(sp.Matrix.hstack(d.normal, scene.tangents))
+    W = exact(sp.Matrix.hstack(d.normal, scene.contact.tangents))
     Y = exact(sp.Matrix.hstack(d.normal_response, d.tangent_response))
     G = (W.T * Y).applyfunc(recognised)
     if any(not _positive(G[:n, :n]) for n in range(1, G.rows + 1)):
@@ -124,7 +124,7 @@ def _evaluate(scene: Scene, point: Mapping[sp.Symbol, sp.Expr], v: sp.ImmutableM
     return ContactProblem(
         scene=scene,
         velocity=v,
-        constraint=exact_sign(scene.constraint.xreplace(dict(point))),
+        constraint=exact_sign(scene.contact.constraint.xreplace(dict(point))),
         gamma=exact_sign(d.gamma.xreplace(dict(point))),
         delassus=G,
         contact_velocity=(W.T * v).applyfunc(recognised),
@@ -142,8 +142,8 @@ def _section(
     scene: Scene, exact: Callable[[sp.MatrixBase], sp.ImmutableMatrix]
 ) -> tuple[tuple[sp.ImmutableMatrix, ...], sp.ImmutableMatrix | None]:
     """Vertices or shape; neither for the section {0}, which is no friction."""
-    friction = scene.friction
-    if friction is None:
+    friction = scene.contact.section
+    if not friction.dimension:
         return (), None
     for condition in friction.conditions:
         value = exact(sp.Matrix([condition.expression]))[0]

@@ -15,7 +15,8 @@ __all__ = ["check_constraint", "gradient_claim"]
 
 def check_constraint(region: Region) -> Hypothesis:
     """(H2) on the ball: an analytic g has bounded second derivatives there."""
-    findings = [check_smoothness(region, "g", [region.state.scene.constraint], Level.ANALYTIC), _gradient(region)]
+    g = region.state.scene.contact.constraint
+    findings = [check_smoothness(region, "g", [g], Level.ANALYTIC), _gradient(region)]
     asks = "g is C^1, grad g is locally Lipschitz and does not vanish near {g = 0}"
     return conclude("H2", asks, findings)
 
@@ -32,7 +33,7 @@ def _gradient(region: Region) -> Finding:
     whole = report(decision, holds="grad g does not vanish on the ball", fails="grad g vanishes")
     if whole.status is ClaimStatus.PROVED:
         return whole
-    contact = decide(region, gradient_claim(region, where=region.state.scene.constraint))
+    contact = decide(region, gradient_claim(region, where=region.state.scene.contact.constraint))
     if contact.status is ClaimStatus.UNDECIDED:
         if whole.status is not ClaimStatus.REFUTED:
             return whole

@@ -25,8 +25,8 @@ __all__ = ["check_one_dimensional", "check_section", "check_strictly_convex"]
 def check_section(region: Region) -> Hypothesis:
     """(H3) on the ball."""
     asks = "D_1 is closed, bounded, convex, holds 0, varies continuously, and its span does not hold grad g"
-    friction = region.state.scene.friction
-    if friction is None:
+    friction = region.state.scene.contact.section
+    if not friction.dimension:
         sentence = "without friction D_1 = {0}"
         return conclude("H3", asks, [Finding(status=ClaimStatus.PROVED, sentence=sentence), _defined(region)])
     findings = [_sound(region, friction), *_continuous(region, friction), _normal_apart(region, friction)]
@@ -36,8 +36,8 @@ def check_section(region: Region) -> Hypothesis:
 def check_one_dimensional(region: Region) -> Hypothesis:
     """(H4) on the ball."""
     asks = "D_1 spans a line everywhere on the ball"
-    friction = region.state.scene.friction
-    if friction is None:
+    friction = region.state.scene.contact.section
+    if not friction.dimension:
         here = region.place(region.state.q)
         sentence = "without friction D_1 = {0}, whose span has dimension 0"
         return conclude("H4", asks, [Finding(status=ClaimStatus.REFUTED, sentence=sentence, place=here)])
@@ -49,8 +49,8 @@ def check_one_dimensional(region: Region) -> Hypothesis:
 def check_strictly_convex(region: Region) -> Hypothesis:
     """(H'4) on the ball: between two points of D_1 there are only points of its interior relative to Span D_1."""
     asks = "D_1 is strictly convex, relative to its span, everywhere on the ball"
-    friction = region.state.scene.friction
-    if friction is None:
+    friction = region.state.scene.contact.section
+    if not friction.dimension:
         sentence = "D_1 = {0} has no two points between which to fail; without friction gamma > 0 everywhere"
         return conclude("H'4", asks, [Finding(status=ClaimStatus.PROVED, sentence=sentence)])
     if isinstance(friction, Polygon) and not _is_flat(region, friction):
@@ -74,7 +74,7 @@ def _sound(region: Region, friction: Section) -> Finding:
 
 
 def _continuous(region: Region, friction: Section) -> Iterator[Finding]:
-    expressions = [*region.state.scene.tangents, *friction.expressions]
+    expressions = [*region.state.scene.contact.tangents, *friction.expressions]
     yield check_smoothness(region, "the friction section", expressions, Level.CONTINUOUS)
     yield _defined(region)
 
@@ -90,7 +90,7 @@ def _defined(region: Region) -> Finding:
 
 def _normal_apart(region: Region, friction: Section) -> Finding:
     """grad g is not in Span D_1 wherever [grad g, H] has full rank."""
-    w, H = derive(region.state.scene).normal, region.state.scene.tangents
+    w, H = derive(region.state.scene).normal, region.state.scene.contact.tangents
     minors = _minors(sp.Matrix.hstack(sp.Matrix(w), sp.Matrix(H)), 1 + friction.dimension)
     decision = decide(region, Claim(kind=ClaimKind.NONZERO, expressions=minors))
     found = report(decision, holds="grad g is not in Span D_1", fails="grad g is in Span D_1")
@@ -112,7 +112,7 @@ def _fills(region: Region, friction: Section, place: Place) -> bool:
 def _full_rank(region: Region, friction: Section) -> tuple[tuple[sp.Expr, ...], ...]:
     """The minors of H and V of which one is not zero each where D_1 has dimension k."""
     k = friction.dimension
-    return _minors(region.state.scene.tangents, k), _minors(_spanning(friction), k)
+    return _minors(region.state.scene.contact.tangents, k), _minors(_spanning(friction), k)
 
 
 def _name(friction: Section) -> str:
@@ -126,7 +126,7 @@ def _spanning(friction: Section) -> sp.MatrixBase:
     """A matrix (k x m) whose columns span what B spans."""
     if isinstance(friction, Segment):
         return sp.Matrix([list(dict.fromkeys(friction.expressions))])
-    return sp.Matrix(friction.vertices).T if isinstance(friction, Polygon) else sp.Matrix(friction.map)
+    return sp.Matrix(friction.vertices).T if isinstance(friction, Polygon) else sp.Matrix(friction.map)  # type: ignore[attr-defined]
 
 
 def _minors(matrix: sp.MatrixBase, size: int) -> tuple[sp.Expr, ...]:
@@ -149,7 +149,7 @@ def _is_flat(region: Region, friction: Section) -> bool:
 
 def _line(region: Region, friction: Section) -> Iterator[Finding]:
     """D_1 is not {0}."""
-    H, V = sp.Matrix(region.state.scene.tangents), _spanning(friction)
+    H, V = sp.Matrix(region.state.scene.contact.tangents), _spanning(friction)
     if V.shape[0] > 1:
         yield _not_zero(region, H * V, "D_1 is not {0}", "D_1 = {0}")
         return
