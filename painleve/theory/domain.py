@@ -75,7 +75,7 @@ class _Search:
 
     def __init__(self, region: Region, conditions: Sequence[_Condition]) -> None:
         self.region, self.conditions = region, conditions
-        self.g = region.state.scene.constraint
+        self.g = region.state.scene.contact.constraint
         self.evaluator = Evaluator(region, [self.g, *(e for c in conditions for e in c.expressions)])
 
     def run(self) -> str | None:
@@ -157,11 +157,11 @@ def _conditions(scene: Scene) -> tuple[_Condition, ...]:
     normal = tuple(e for e in derive(scene).normal if e != 0)
     if all(_varies(scene, [e]) for e in normal):
         found.append(_nonzero_gradient(normal))
-    if scene.friction is not None:
-        for condition in scene.friction.conditions:
-            if _varies(scene, [condition.expression]):
-                found.append(_nonnegative(condition.expression, condition.sentence))
-    others = tuple(e for e in (scene.constraint, *normal, *scene.tangents) if _varies(scene, [e]) and not _is_entire(e))
+    for condition in scene.contact.section.conditions:
+        if _varies(scene, [condition.expression]):
+            found.append(_nonnegative(condition.expression, condition.sentence))
+    formulas = (scene.contact.constraint, *normal, *scene.contact.tangents)
+    others = tuple(e for e in formulas if _varies(scene, [e]) and not _is_entire(e))
     if others:
         found.append(_defined(others))
     return tuple(dict.fromkeys(found))
