@@ -1,4 +1,4 @@
-"""Scenes that are not analytic at the state, or near it: plain numbers stay right, expansions are refused in one line."""
+"""Scenes that are not analytic at the state or near it: plain numbers stay right, expansions refuse in one line."""
 
 from __future__ import annotations
 

@@ -110,7 +110,7 @@ def test_what_is_proved_holds_at_random_configurations_and_what_is_refuted_fails
 def test_every_method_refuses_a_ball_with_configurations_at_which_S_does_not_exist():
     limit = limit_set(at(load_scene("minimal"), "isolated"))
     for name in METHODS:
-        with pytest.raises(InputError, match="M is not positive definite at x = -1.5, y = 0"):
+        with pytest.raises(InputError, match=r"M is not positive definite at x = -1\.5, y = 0"):
             distance(limit, 3.0, name)
     for members in (
         lambda: sample_members(limit, 3.0, SampleOptions(samples=10)),
