@@ -3,6 +3,7 @@
 From an exact point the coefficients are known to dozens of digits, so that those which vanish there come out as
 zero for every practical purpose, and differences such as g(q + dq) - g(q) are formed without cancellation. From a
 wide ball the same arithmetic encloses the derivatives over a whole box: the remainder of a Taylor form.
+(docs/theory.md, section 8.2.)
 """
 
 from __future__ import annotations
