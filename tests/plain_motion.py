@@ -15,7 +15,7 @@ import sympy as sp
 from dynamics_scenes import U_X, T, X, Y, block, space_block
 
 from painleve.core.motion_codes import FixedStep
-from painleve.core.stepping import Fates, Method, Track
+from painleve.core.stepping import Fates, SteppingMethod, Track
 from painleve.kernels.motion.compiled import make_motion
 from painleve.mechanics.friction import Segment
 from painleve.mechanics.scene import Coordinate, Parameter, Scene, make_scene
@@ -55,7 +55,7 @@ def cases(scene: Scene, seed: int) -> tuple[np.ndarray, np.ndarray, tuple[float,
     return q, u, p
 
 
-def stepped(scene: Scene, run: Callable, run_members: Callable, method: Method) -> dict[str, np.ndarray]:
+def stepped(scene: Scene, run: Callable, run_members: Callable, method: SteppingMethod) -> dict[str, np.ndarray]:
     """Every column of the tracks of the members, one after the other, and of their fates."""
     (q, u, p), d, n = cases(scene, method.scheme), scene.dimension, STEPS + 1
     tracks = []
@@ -76,7 +76,7 @@ def everything(plain: bool) -> dict[str, np.ndarray]:
     for scene in (parabola(), block(frictional=False), space_block("ellipse"), space_block("kite")):
         run, run_members = functions(scene, plain)
         for scheme in IN_SPACE if scene.friction_dimension > 1 else FixedStep:
-            columns = stepped(scene, run, run_members, Method(int(scheme), 0.5, 1e-3))
+            columns = stepped(scene, run, run_members, SteppingMethod(int(scheme), 0.5, 1e-3))
             found |= {f"{scene.name} {scheme.name} {name}": column for name, column in columns.items()}
     return found
 

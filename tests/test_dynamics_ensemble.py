@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from painleve.core.motion_codes import Change, Ending, FixedStep, MemberOutcome
-from painleve.core.stepping import Method
+from painleve.core.stepping import SteppingMethod
 from painleve.dynamics.ensemble import _Task, run_ensemble
 from painleve.dynamics.simulate import simulate
 from painleve.dynamics.start import as_start
@@ -86,7 +86,7 @@ def test_initial_states_fill_the_two_balls() -> None:
     task = _Task(
         start=start,
         scheme="contact_dynamics",
-        method=Method(int(FixedStep.CONTACT_DYNAMICS), 0.0, 0.0),
+        method=SteppingMethod(int(FixedStep.CONTACT_DYNAMICS), 0.0, 0.0),
         step=1e-3,
         until=1.0,
         count=4000,

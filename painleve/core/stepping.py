@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-__all__ = ["ITERATIONS", "NOT_SOLVED", "Fates", "Method", "Step", "Track"]
+__all__ = ["ITERATIONS", "NOT_SOLVED", "Fates", "SteppingMethod", "Step", "Track"]
 
 NOT_SOLVED = -1  # in place of a branch, where the iteration of an implicit step does not converge
 ITERATIONS = 50  # at most, of an implicit step
@@ -12,7 +12,7 @@ ITERATIONS = 50  # at most, of an implicit step
 Vector = tuple[float, ...]
 
 
-class Method(NamedTuple):
+class SteppingMethod(NamedTuple):
     """A scheme and its numbers."""
 
     scheme: int  # painleve.core.motion_codes.FixedStep

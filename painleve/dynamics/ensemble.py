@@ -16,7 +16,7 @@ import numpy as np
 
 from painleve.core.ball_maps import uniform_ball, uniforms_needed
 from painleve.core.motion_codes import Ending, MemberOutcome
-from painleve.core.stepping import Fates, Method
+from painleve.core.stepping import Fates, SteppingMethod
 from painleve.core.streams import uniform_block
 from painleve.dynamics.grid import check_step, check_until
 from painleve.dynamics.scheme import Stepped
@@ -123,7 +123,7 @@ class _Task:
 
     start: Start
     scheme: str
-    method: Method
+    method: SteppingMethod
     step: float
     until: float
     count: int
@@ -197,7 +197,7 @@ def run_ensemble(
     task = _Task(
         start=beginning,
         scheme=scheme,
-        method=Method(int(stepped.code), stepped.theta(settings), contact_tolerance),
+        method=SteppingMethod(int(stepped.code), stepped.theta(settings), contact_tolerance),
         step=check_step(step),
         until=check_until(until),
         count=_checked_count(count),

@@ -8,7 +8,7 @@ import numpy as np
 
 from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Ending
-from painleve.core.stepping import Method, Track
+from painleve.core.stepping import SteppingMethod, Track
 from painleve.dynamics.grid import TimeGrid
 from painleve.dynamics.start import Start
 from painleve.dynamics.trajectory import Trajectory
@@ -29,7 +29,7 @@ def empty_track(start: Start, steps: int) -> Track:
 
 def run_fixed_step(
     name: str,
-    method: Method,
+    method: SteppingMethod,
     lag: float,
     start: Start,
     grid: TimeGrid,

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from painleve.core.motion_codes import FixedStep
-from painleve.core.stepping import Method
+from painleve.core.stepping import SteppingMethod
 from painleve.dynamics.fixed_step import run_fixed_step
 from painleve.dynamics.grid import TimeGrid
 from painleve.dynamics.start import Start
@@ -75,7 +75,7 @@ class Stepped(Scheme):
     def run(
         self, start: Start, grid: TimeGrid, tolerance: float, options: Mapping[str, float], progress: Progress
     ) -> Trajectory:
-        method = Method(int(self.code), self.theta(options), tolerance)
+        method = SteppingMethod(int(self.code), self.theta(options), tolerance)
         return run_fixed_step(self.name, method, self.lag(method.theta), start, grid, progress)
 
 

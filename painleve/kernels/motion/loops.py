@@ -36,7 +36,7 @@ def failure_of(taken):
 
 @jit
 def run(method, since, t, h, p, track):
-    """Take len(h) steps of a painleve.core.stepping.Method from the first row of a Track, and fill it.
+    """Take len(h) steps of a painleve.core.stepping.SteppingMethod from the first row of a Track, and fill it.
 
     since: steps since the last contact, at the start and at the end. Returns (steps taken, ending, since).
     """
