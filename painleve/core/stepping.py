@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-__all__ = ["ITERATIONS", "NOT_SOLVED", "Fates", "SteppingMethod", "Step", "Track"]
+__all__ = ["ITERATIONS", "NOT_SOLVED", "Fates", "Step", "SteppingMethod", "Track"]
 
 NOT_SOLVED = -1  # in place of a branch, where the iteration of an implicit step does not converge
 ITERATIONS = 50  # at most, of an implicit step
