@@ -27,6 +27,7 @@ from painleve.exact.jets import Jet, jets, monomials
 from painleve.kernels.compiled import Kernels, make_kernels
 from painleve.kernels.rows import Rows
 from painleve.theory.limit_set import LimitSet
+from painleve.theory.sections.listed import theory_of
 
 __all__ = ["Arithmetic", "Expansion", "LocalProblem", "make_local_problem"]
 
@@ -276,12 +277,9 @@ def _floats(limit: LimitSet, values: Sequence[sp.Expr]) -> np.ndarray:
 
 def _base_impulse(limit: LimitSet) -> np.ndarray | SpaceBase | PolygonBase:
     """-G^-1 v_c at the base state, whether or not it is in the cone (0 without friction)."""
-    state, d = limit.state, make_kernels(limit.state.scene).derivation
+    state = limit.state
     if state.scene.contact.section.dimension == 2:
         return space_base(limit, BITS)
     if not state.scene.contact.section.dimension:
         return np.zeros(2)
-    slip = (state.scene.contact.tangents.T * sp.Matrix(state.scene.u))[0, 0]
-    (b,), (C,) = d.couplings, d.compliance
-    determinant = d.a * C - b**2
-    return np.array([state.number(slip * b / determinant), state.number(-slip * d.a / determinant)])
+    return np.array([state.number(x) for x in theory_of(state.scene.contact).sticking_impulse(state)])
