@@ -42,6 +42,56 @@ def block(*, frictional: bool = True) -> Scene:
     )
 
 
+@cache
+def hinged_rod() -> Scene:
+    """A rod (m = L = 1) that hangs from a hinge and rests with its end on a board of mass M_b, which moves freely.
+
+    The board's height is such that the rod is at 30 degrees from the vertical. det G = 3 sin(phi)^2/M_b.
+    """
+    phi, s = sp.symbols("phi s", real=True)
+    parameters = [
+        Parameter(name="M_b", unit="kg", sentence="mass of the board", default="1"),
+        Parameter(name="mu", unit="1", sentence="friction", default="1/2", range="nonnegative"),
+    ]
+    board, mu = (p.symbol for p in parameters)
+    return make_scene(
+        name="hinged_rod",
+        sentence="a rod hinged above a board that moves",
+        source="docs/theory.md, section 5",
+        coordinates=[
+            Coordinate(name="phi", unit="rad", sentence="angle"),
+            Coordinate(name="s", unit="m", sentence="s"),
+        ],
+        parameters=parameters,
+        inertia=sp.diag(sp.Rational(1, 3), board),
+        potential=-sp.Rational(981, 200) * sp.cos(phi),
+        constraint=sp.cos(phi) - sp.sqrt(3) / 2,
+        tangential_displacements=[sp.sin(phi) - s],
+        friction=Segment(minus=mu, plus=mu),
+    )
+
+
+@cache
+def slope() -> Scene:
+    """A point of mass m on a plane at the angle alpha, x along it upwards and y off it, drawn by F along it."""
+    names = ("m", "alpha", "mu", "F")
+    parameters = [Parameter(name=n, unit="1", sentence=n, default="1", range="real") for n in names]
+    m, alpha, mu, F = (p.symbol for p in parameters)
+    gravity = sp.Rational(981, 100)
+    return make_scene(
+        name="slope",
+        sentence="a point on a slope",
+        source="Coulomb",
+        coordinates=[Coordinate(name=n, unit="m", sentence=n) for n in ("x", "y")],
+        parameters=parameters,
+        inertia=sp.diag(m, m),
+        force=sp.Matrix([F - m * gravity * sp.sin(alpha), -m * gravity * sp.cos(alpha)]),
+        constraint=-Y,
+        tangential_displacements=[X],
+        friction=Segment(minus=mu, plus=mu),
+    )
+
+
 class Reference:
     """The paper's scheme in plain NumPy: M, f and g as the scene gives them, S as the least energy on a segment."""
 

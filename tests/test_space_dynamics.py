@@ -98,7 +98,8 @@ def test_the_margins_of_proposition_1_notice_a_wrong_step(section: str) -> None:
     for wrong in ([0.0, 0.0, -1e-6], [1e-6, 0.0, 0.0], [-1e-6, 0.0, 0.0]):
         u = found.u.copy()
         u[i] += wrong
-        margins = check_proposition1(start, found.t, np.full(100, 1e-2), found.q, u, 0.0)
+        sticks = found.branch == ContactMode.STICK
+        margins = check_proposition1(start, found.t, np.full(100, 1e-2), found.q, u, sticks, 0.0)
         if margins.membership[i - 1] > 1e-8:
             break
     else:

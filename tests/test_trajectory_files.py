@@ -76,6 +76,16 @@ def test_the_codes_of_the_file_name_the_kinds_of_the_jumps(
     assert np.unique(change[1:]).size == 2
 
 
+def test_a_file_says_the_margins_of_proposition_1_and_what_they_are_relative_to(
+    datasets: dict[str, xr.Dataset], trajectories: dict[str, Trajectory]
+) -> None:
+    attributes = datasets["stoss"].attrs
+    for name, margin in trajectories["stoss"].proposition1.as_dict().items():
+        assert attributes[f"proposition1_{name}"] == margin
+    assert "relative to the velocities, forces and impulses that enter its step" in attributes["proposition1_margins"]
+    assert not [name for name in datasets["event_driven"].attrs if name.startswith("proposition1")]
+
+
 def test_the_outline_keeps_the_lengths_of_its_links_and_its_tip_at_the_gap(datasets: dict[str, xr.Dataset]) -> None:
     for name, links, tip in (("stoss", [2.0], 0), ("drop", [2.0], 0), ("arm", [1.0, 1.0], 2)):
         found = datasets[name]

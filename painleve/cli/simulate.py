@@ -61,6 +61,8 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _print(trajectory: Trajectory) -> None:
+    from painleve.dynamics.proposition1 import MARGIN_SCALE
+
     facts = trajectory.as_dict()
     print(f"{trajectory.start.scene.name}, {trajectory.start.label}: {facts['ending']}")
     print(f"  steps      {trajectory.steps}, t = {trajectory.t[-1]:.9g} s at the end")
@@ -73,4 +75,4 @@ def _print(trajectory: Trajectory) -> None:
     if margins is not None:
         for name, margin in margins.as_dict().items():
             print(f"  Proposition 1, {name}: worst margin {margin:.3g} at step {margins.steps()[name]}")
-        print("  (a margin is positive where the statement fails; rounding alone gives some 1e-16)")
+        print(f"  (a margin is positive where the statement fails; {MARGIN_SCALE})")

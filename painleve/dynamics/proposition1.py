@@ -1,6 +1,14 @@
 """Proposition 1 of the paper, checked at every step of a Contact Dynamics trajectory, as margins.
 
 The impulse r = M(u_{i+1} - u_i) - h f is formed anew from the trajectory, not taken from the law.
+
+Margins are relative to the sizes that enter a step, so that rounding gives some 1e-16 whatever the masses and units:
+
+    e = |u_{i+1}| + |u_i| + |h M^-1 f| + |M^-1 W| L,   L = |r'|, and L = |G^-1| |G| |r'| where the contact sticks,
+
+component by component, with r' the impulses of the contact and G = W^T M^-1 W. A sticking impulse is -G^-1 W^T v: where
+G is close to singular, as for a light body on a heavy board, rounding moves it by |G^-1| |G| times as much. A margin is
+divided by s = sqrt(e . |M| e), the kinetic norm of these sizes, or by its square.
 """
 
 from __future__ import annotations
@@ -13,9 +21,12 @@ import numpy as np
 from painleve.dynamics.contact_rows import directions, nearest_impulse
 from painleve.dynamics.start import Start
 
-__all__ = ["Proposition1", "check_proposition1"]
+__all__ = ["MARGINS", "MARGIN_SCALE", "Proposition1", "check_proposition1"]
 
 BLOCK = 65536  # steps at a time, so that memory does not grow with the trajectory
+MARGIN_SCALE = (
+    "it is relative to the velocities, forces and impulses that enter its step: rounding alone gives some 1e-16"
+)
 MARGINS = ("membership", "dissipation", "norm_bound")
 
 
@@ -23,10 +34,10 @@ MARGINS = ("membership", "dissipation", "norm_bound")
 class Proposition1:
     """Margins of each step (n,), positive where the statement fails; rounding alone gives some 1e-16.
 
-    With s = |u_{i+1}| + |u_i| + h |M^-1 f| in the kinetic norm at q_{i+1}:
+    With s the kinetic norm of the sizes that enter (above), at q_{i+1}:
     membership: distance of r from R(q_{i+1}) in the norm of M^-1, over s (an upper bound on it: of the part of r that
     W does not span, and of the violations of 0 <= r_n and of r_t in r_n B, B the friction section);
-    dissipation: <u_{i+1}, r>/s^2; norm_bound: (|u_{i+1}| - |u_i| - h |M^-1/2| |f|)/s.
+    dissipation: <u_{i+1}, r>/s^2; norm_bound: (|u_{i+1}| - |u_i| - h |M^-1/2| |f|)/s, in the kinetic norm.
     """
 
     membership: np.ndarray
@@ -56,9 +67,17 @@ class Proposition1:
 
 
 def check_proposition1(
-    start: Start, t: np.ndarray, h: np.ndarray, q: np.ndarray, u: np.ndarray, tolerance: float
+    start: Start,
+    t: np.ndarray,
+    h: np.ndarray,
+    q: np.ndarray,
+    u: np.ndarray,
+    sticks: np.ndarray,
+    tolerance: float,
 ) -> Proposition1:
-    """Margins of the steps from row i to row i + 1. t: (n + 1,), h: (n,), q, u: (n + 1, d).
+    """Margins of the steps from row i to row i + 1. t, sticks: (n + 1,), h: (n,), q, u: (n + 1, d).
+
+    `sticks` says of a step whether its contact stuck; row 0 is not used.
 
     Ctrl-C ends it with those of the steps until then.
     """
@@ -67,37 +86,66 @@ def check_proposition1(
         for i in range(0, len(h), BLOCK):
             old, new = slice(i, min(i + BLOCK, len(h))), slice(i + 1, min(i + BLOCK, len(h)) + 1)
             with np.errstate(over="ignore", invalid="ignore"):  # a motion that leaves the numbers has no margins
-                parts.append(_margins(start, t[new], h[old], q[new], u[old], u[new], tolerance))
+                parts.append(_margins(start, t[new], h[old], q[new], u[old], u[new], sticks[new], tolerance))
     table = np.concatenate(parts, axis=1) if parts else np.empty((3, 0))
     return Proposition1(**dict(zip(MARGINS, table, strict=True)))
 
 
 def _margins(
-    start: Start, t: np.ndarray, h: np.ndarray, q: np.ndarray, u: np.ndarray, u1: np.ndarray, tolerance: float
+    start: Start,
+    t: np.ndarray,
+    h: np.ndarray,
+    q: np.ndarray,
+    u: np.ndarray,
+    u1: np.ndarray,
+    sticks: np.ndarray,
+    tolerance: float,
 ) -> np.ndarray:
     """The three margins (3, n) of n steps."""
     rows, M, f = start.tabulate(t, q, u)
-    r = np.einsum("nij,nj->ni", M, u1 - u) - h[:, None] * f
-    inverse = np.linalg.inv(M)
-    pushed = h[:, None] * np.einsum("nij,nj->ni", inverse, f)
-    old, new, push = (_norm(M, x) for x in (u, u1, pushed))
-    scale = old + new + push
+    root, W = _inverse_root(M), np.stack(directions(start.motion, rows), axis=2)
+    A, turned = root @ W, np.swapaxes(root, 1, 2)  # the columns of W in the norm of M^-1
+    back = np.linalg.pinv(A)
+    r, pushed = _times(M, u1 - u) - h[:, None] * f, _times(turned, _times(root, h[:, None] * f))
+    given = _times(root, r)
+    parts = _times(back, given)
+    nearest = _times(A, nearest_impulse(start.motion, rows, parts) * (rows[:, 0] >= -tolerance)[:, None])
+    outside = np.linalg.norm(given - nearest * _along(nearest, given)[:, None], axis=1)
+    bound = _kinetic(M, u) + h * np.linalg.norm(f, axis=1) * np.linalg.norm(root, ord=2, axis=(1, 2))
+    sizes = np.abs(u1) + np.abs(u) + np.abs(pushed)
+    scale = _kinetic(np.abs(M), sizes + _times(np.abs(turned @ A), _blurred(A, back, parts, sticks)))
     scale[scale == 0.0] = 1.0
-    bound = old + h * np.linalg.norm(f, axis=1) / np.sqrt(np.linalg.eigvalsh(M)[:, 0])
-    outside = _distance_from_cone(start, rows, inverse, r, rows[:, 0] >= -tolerance)
-    return np.array([outside / scale, np.einsum("ni,ni->n", u1, r) / scale**2, (new - bound) / scale])
+    return np.array([outside / scale, (u1 * r).sum(axis=1) / scale**2, (_kinetic(M, u1) - bound) / scale])
 
 
-def _norm(A: np.ndarray, x: np.ndarray) -> np.ndarray:
-    return np.sqrt(np.maximum(np.einsum("ni,nij,nj->n", x, A, x), 0.0))
+def _blurred(A: np.ndarray, back: np.ndarray, parts: np.ndarray, sticks: np.ndarray) -> np.ndarray:
+    """L (n, 1 + k), the sizes of the impulses, from A = M^-1/2 W and its inverse `back`."""
+    sizes = np.abs(parts)
+    G, inverse = (np.abs(x @ np.swapaxes(x, 1, 2)) for x in (np.swapaxes(A, 1, 2), back))
+    return np.where(sticks[:, None], _times(inverse, _times(G, sizes)), sizes)
 
 
-def _distance_from_cone(
-    start: Start, rows: np.ndarray, inverse: np.ndarray, r: np.ndarray, touching: np.ndarray
-) -> np.ndarray:
-    """An upper bound on the distance of r from R(q) in the norm of M^-1."""
-    W = np.stack(directions(start.motion, rows), axis=2)
-    response = inverse @ W
-    parts = np.linalg.solve(np.swapaxes(W, 1, 2) @ response, np.einsum("nik,ni->nk", response, r)[..., None])[..., 0]
-    nearest = nearest_impulse(start.motion, rows, parts) * touching[:, None]
-    return _norm(inverse, r - np.einsum("nik,nk->ni", W, nearest))
+def _along(ray: np.ndarray, point: np.ndarray) -> np.ndarray:
+    """t >= 0 (n,) for which t ray is the nearest to the point; a ray of the cone stays in it."""
+    squared = (ray**2).sum(axis=1)
+    return np.maximum(np.divide((ray * point).sum(axis=1), squared, out=np.zeros_like(squared), where=squared > 0.0), 0)
+
+
+def _inverse_root(M: np.ndarray) -> np.ndarray:
+    """L^-1 with M = L L^T (n, d, d): |L^-1 x| is the norm of M^-1, |L^-1| that of M^-1/2; NaN where there is none.
+
+    Masses of very different size do not spoil the light ones, as they do an eigenvalue of M.
+    """
+    sound = np.isfinite(M).all(axis=(1, 2))
+    sound[sound] = np.linalg.eigvalsh(M[sound])[:, 0] > 0.0
+    root = np.full_like(M, np.nan)
+    root[sound] = np.linalg.inv(np.linalg.cholesky(M[sound]))
+    return root
+
+
+def _times(A: np.ndarray, x: np.ndarray) -> np.ndarray:
+    return np.asarray((A @ x[..., None])[..., 0])
+
+
+def _kinetic(M: np.ndarray, x: np.ndarray) -> np.ndarray:
+    return np.sqrt(np.maximum((x * _times(M, x)).sum(axis=1), 0.0))

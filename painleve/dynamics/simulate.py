@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Ending
 from painleve.dynamics.grid import make_grid
 from painleve.dynamics.proposition1 import check_proposition1
@@ -43,7 +44,8 @@ def simulate(
     result = method.run(beginning, grid, contact_tolerance, settings, progress or _ignore)
     if not monitor or scheme != "contact_dynamics":
         return result
-    margins = check_proposition1(beginning, result.t, grid.h[: result.steps], result.q, result.u, contact_tolerance)
+    steps, sticks = grid.h[: result.steps], result.branch == ContactMode.STICK
+    margins = check_proposition1(beginning, result.t, steps, result.q, result.u, sticks, contact_tolerance)
     if margins.count < result.steps:
         detail = f"Proposition 1 was checked for the first {margins.count} steps"
         result = replace(result, ending=Ending.INTERRUPTED, detail=detail)
