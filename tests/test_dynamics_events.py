@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from fractions import Fraction
 
 import numpy as np
 import pytest
-from dynamics_scenes import block
+from dynamics_scenes import block, slope
 from scipy.integrate import solve_ivp
 
 from painleve.core.codes import ContactMode
@@ -106,6 +107,59 @@ def test_a_tip_at_rest_has_every_mode_that_solves_newtons_law() -> None:
             )
         assert len(modes) == solutions_by_friction_ratio(point, parameters["mu"])
     assert counts == {1, 3}  # an odd number, but where two of them merge
+
+
+@pytest.mark.parametrize(("factor", "moves"), [(0.0, 0), (1.0, 0), (1 - 2**-30, 0), (1 + 2**-30, 1)])
+def test_a_block_holds_up_to_the_limit_of_friction_and_slides_beyond_it(factor: float, moves: int) -> None:
+    """On the limit itself, rounded as it comes, it holds; either way, with any mass."""
+    for mass, mu, side in itertools.product(["1", "1/3", "1000"], ["1/2", "1/3", "sqrt(2)"], [1, -1]):
+        force = f"{side}*({Fraction(factor)})*({mass})*({mu})*9.81"
+        start = make_start(slope(), q={"x": 0, "y": 0}, parameters={"alpha": 0, "m": mass, "mu": mu, "F": force})
+        found = simulate(start, scheme="event_driven", step=0.5, until=1.0)
+        assert found.ending is Ending.REACHED_END
+        way = moves * side * 2**-30 * start.p[2] * 9.81 / 2
+        assert found.q[-1, 0] == pytest.approx(way, rel=1e-6, abs=1e-14)
+        assert found.statistics["stick"] == (0 if moves else found.steps)
+
+
+def test_a_block_on_ice_moves_with_any_force() -> None:
+    for force in (0.0, 1e-12, -3.0):
+        start = make_start(slope(), q={"x": 0, "y": 0}, parameters={"alpha": 0, "mu": 0, "F": force})
+        found = simulate(start, scheme="event_driven", step=0.5, until=1.0)
+        assert found.ending is Ending.REACHED_END
+        assert found.q[-1, 0] == pytest.approx(force / 2, rel=1e-9)
+
+
+def test_a_block_rests_on_a_slope_at_the_angle_of_friction() -> None:
+    pushes = (("0", False), ("-1/2**30", True), ("1/2**30", False), ("2*9.81*sin(ALPHA)", False))
+    for degrees, (push, moves) in itertools.product((1, 10, 30, 45, 60, 80, 89), pushes):
+        alpha = f"({degrees}*pi/180)"
+        start = make_start(
+            slope(),
+            q={"x": 0, "y": 0},
+            parameters={"alpha": alpha, "m": 1, "mu": f"tan{alpha}", "F": push.replace("(ALPHA)", alpha)},
+        )
+        found = simulate(start, scheme="event_driven", step=0.25, until=1.0)
+        assert found.ending is Ending.REACHED_END
+        assert found.q[-1, 0] == pytest.approx(-(2.0**-31) * moves, rel=1e-4, abs=1e-13)
+
+
+def test_a_block_drawn_to_and_fro_sticks_and_slides_when_the_force_passes_the_limit() -> None:
+    """beat sin(3 t) against the friction 1.25: it sticks until sin(3 t) = 1/2, and the slip is an integral."""
+    start = make_start(block(), q={"x": 0, "y": 0}, parameters={"mu": 0.25, "weight": 10, "beat": 2.5})
+    found = simulate(start, scheme="event_driven", step=0.01, until=0.5)
+    begins = math.asin(0.5) / 3
+    moving = np.flatnonzero(found.branch == ContactMode.SLIP_MINUS)
+    assert found.t[moving[0] - 1] == pytest.approx(begins, abs=1e-9)
+    t = found.t[moving]
+    exact = 2.5 * (np.cos(3 * begins) - np.cos(3 * t)) / 3 - 1.25 * (t - begins)
+    np.testing.assert_allclose(found.u[moving, 0], exact, atol=1e-8)
+
+
+def test_a_body_at_rest_without_weight_stays_free() -> None:
+    found = simulate(make_start(block(), q={"x": 0, "y": 0}), scheme="event_driven", step=0.1, until=1.0)
+    assert found.ending is Ending.REACHED_END
+    assert not found.q.any()
 
 
 def solutions_by_friction_ratio(point: ContactPoint, mu: float) -> int:

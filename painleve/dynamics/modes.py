@@ -16,7 +16,7 @@ from painleve.dynamics.start import Start
 
 __all__ = ["ContactPoint", "Mode", "closed_modes"]
 
-ROUNDING = 1e-13  # relative: an edge of the cone below this has no sign
+ROUNDING = 1e-13  # relative: an edge of the cone below this has no sign, and neither has a distance from it
 Mode = ContactMode  # FREE: the contact opens; STICK, SLIP_PLUS, SLIP_MINUS, FRICTIONLESS: it stays closed
 
 
@@ -89,6 +89,22 @@ class ContactPoint:
         normal = -self.beta_n / edge if edge != 0.0 else math.copysign(math.inf, -self.beta_n)
         return normal, self.ratio(mode) * normal
 
+    def reserve(self, side: Mode) -> float:
+        """How far the sticking force is from an edge of the cone, positive inside: (a + b s)/det G times the
+        acceleration that slip on that edge would have against its direction."""
+        normal, tangential = self.force(Mode.STICK)
+        bound = self.ratio(side) * normal
+        return bound - tangential if side is Mode.SLIP_PLUS else tangential - bound
+
+    def reserve_noise(self, side: Mode) -> float:
+        """What rounding may do to `reserve`, from the sizes of the terms that it is made of."""
+        d = self.d
+        size_n = _size(self.rows[1 : 1 + d], self.acceleration, self.beta_n)
+        size_t = _size(self.rows[3 + 2 * d : 3 + 3 * d], self.acceleration, self.beta_t)
+        b, s = abs(self.b), abs(self.ratio(side))
+        terms = b * size_n + self.a * size_t + s * (self.C * size_n + b * size_t)
+        return ROUNDING * terms / (self.a * self.C - self.b * self.b)
+
     def stopping_impulse(self) -> tuple[float, float]:
         """The impulse that stops the tip."""
         return stick_impulse(self.a, self.b, self.C, self.v_n, self.v_t)
@@ -110,16 +126,23 @@ def closed_modes(point: ContactPoint, slip: int) -> list[Mode]:
     if slip != 0:
         mode = Mode.SLIP_MINUS if slip > 0 else Mode.SLIP_PLUS
         return found + ([mode] if point.presses(mode) else [])
-    normal, tangential = point.force(Mode.STICK)
-    if normal > 0.0 and point.ratio(Mode.SLIP_MINUS) * normal <= tangential <= point.ratio(Mode.SLIP_PLUS) * normal:
-        found.append(Mode.STICK)
-    for mode in (Mode.SLIP_PLUS, Mode.SLIP_MINUS):
-        normal = point.force(mode)[0]
-        s = point.ratio(mode)
-        if point.presses(mode) and (point.beta_t + (point.b + point.C * s) * normal) * s < 0.0:
-            found.append(mode)
+    sides = (Mode.SLIP_PLUS, Mode.SLIP_MINUS)
+    reserves = [point.reserve(side) for side in sides]
+    noises = [point.reserve_noise(side) for side in sides]
+    inside = all(reserve >= -noise for reserve, noise in zip(reserves, noises, strict=True))
+    if inside and point.force(Mode.STICK)[0] > 0.0:
+        found.append(Mode.STICK)  # on an edge too, where slip without acceleration is the same motion
+    for side, reserve, noise in zip(sides, reserves, noises, strict=True):
+        if point.presses(side) and math.copysign(1.0, point.edge(side)) * reserve < -noise:
+            found.append(side)
     return found
 
 
 def _dot(x: tuple[float, ...], y: tuple[float, ...]) -> float:
     return float(sum(a * b for a, b in zip(x, y, strict=True)))
+
+
+def _size(w: tuple[float, ...], acceleration: tuple[float, ...], beta: float) -> float:
+    """The size of the terms of beta = w . acceleration + drift."""
+    drift = beta - _dot(w, acceleration)
+    return sum(abs(x * y) for x, y in zip(w, acceleration, strict=True)) + abs(drift)

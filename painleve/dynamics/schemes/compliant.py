@@ -17,7 +17,7 @@ from scipy.integrate import Radau
 
 from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Ending
-from painleve.dynamics.arc import ArcPoint, Dense, follow
+from painleve.dynamics.arc import ArcPoint, Dense, Event, follow
 from painleve.dynamics.grid import TimeGrid
 from painleve.dynamics.modes import ContactPoint
 from painleve.dynamics.recorder import Recorder
@@ -94,7 +94,7 @@ class _CompliantRun:
                 atol=self.options["atol"],
                 max_step=self.longest,
             )
-            switched = follow(solver, [lambda t, y: sign * self.closure(t, y)], self.accept)
+            switched = follow(solver, [Event(lambda t, y: sign * self.closure(t, y))], self.accept)
         self.evaluations, self.arcs = self.evaluations + int(solver.nfev), self.arcs + 1
         if solver.status == "failed":
             return Ending.STEP_SIZE_UNDERFLOW

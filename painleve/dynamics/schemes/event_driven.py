@@ -131,29 +131,28 @@ class _EventDrivenRun:
             # A tip that leaves the contact may stand above g = 0 by the drift of the arcs before: it meets the floor
             # again where it left it. A test of g = 0 would never see it come back.
             level = max(0.0, self.point(self.t, self.y).rows[0])
-            return {lambda t, y: level - self.point(t, y).rows[0]: self.after_contact}
-        force: dict[Event, Callable[[], Mode]] = {lambda t, y: self.point(t, y).force(mode)[0]: self.lift_off}
+            return {Event(lambda t, y: level - self.point(t, y).rows[0]): self.after_contact}
+        force: dict[Event, Callable[[], Mode]] = {Event(lambda t, y: self.point(t, y).force(mode)[0]): self.lift_off}
         if mode is Mode.FRICTIONLESS:
             return force
         if mode is Mode.STICK:
             return {**force, **self.edge_event(Mode.SLIP_PLUS), **self.edge_event(Mode.SLIP_MINUS)}
         sign = 1.0 if mode is Mode.SLIP_MINUS else -1.0
         return {
-            lambda t, y: sign * self.point(t, y).v_t: self.end_slip,
-            lambda t, y: -self.point(t, y).beta_n: self.lift_off,
-            lambda t, y: self.point(t, y).edge(mode): self.lose_edge,
+            Event(lambda t, y: sign * self.point(t, y).v_t, self.at_rest): self.end_slip,
+            Event(lambda t, y: -self.point(t, y).beta_n): self.lift_off,
+            Event(lambda t, y: self.point(t, y).edge(mode)): self.lose_edge,
         }
 
-    def edge_event(self, side: Mode) -> dict[Event, Callable[[], Mode]]:
-        """Sticking ends when its force reaches an edge of the cone."""
-        return {lambda t, y: self.reserve(t, y, side): lambda: self.begin_slip(side)}
+    @property
+    def at_rest(self) -> float:
+        """Velocities of the tip up to this are zero."""
+        return ROUNDING * (1.0 + float(np.abs(self.y[self.d : 2 * self.d]).sum()))
 
-    def reserve(self, t: float, y: np.ndarray, side: Mode) -> float:
-        """How far the sticking force is from an edge of the cone."""
-        point = self.point(t, y)
-        normal, tangential = point.force(Mode.STICK)
-        bound = point.ratio(side) * normal
-        return bound - tangential if side is Mode.SLIP_PLUS else tangential - bound
+    def edge_event(self, side: Mode) -> dict[Event, Callable[[], Mode]]:
+        """Sticking ends when its force leaves the cone over an edge; on the edge it still sticks."""
+        noise = self.point(self.t, self.y).reserve_noise(side)
+        return {Event(lambda t, y: self.point(t, y).reserve(side), noise): lambda: self.begin_slip(side)}
 
     def begin_slip(self, side: Mode) -> Mode:
         if self.point(self.t, self.y).edge(side) <= 0.0:
@@ -166,7 +165,7 @@ class _EventDrivenRun:
     def after_contact(self) -> Mode:
         """The mode at a landing or at the start; impacts and rounding are projected out."""
         point = self.point(self.t, self.y)
-        small = ROUNDING * (1.0 + float(np.abs(self.y[self.d : 2 * self.d]).sum()))
+        small = self.at_rest
         if point.v_n > small:
             return Mode.FREE
         slip = 0 if abs(point.v_t) <= small or not point.planar else int(math.copysign(1, point.v_t))

@@ -1,7 +1,4 @@
-"""The slender rod in space: its lower tip slides on a horizontal floor with isotropic friction.
-
-Source: docs/theory.md, section 6.2.
-"""
+"""The slender rod in space: its lower tip slides on a horizontal floor with isotropic friction."""
 
 import sympy as sp
 

@@ -1,7 +1,4 @@
-"""The slender rod with a worn tip: the coefficient of friction depends on the inclination.
-
-Source: docs/theory.md, section 6.2.
-"""
+"""The slender rod with a worn tip: the coefficient of friction depends on the inclination."""
 
 import sympy as sp
 
