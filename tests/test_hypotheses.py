@@ -229,7 +229,21 @@ def test_a_smaller_ball_leaves_a_refuting_point_out():
 
 @pytest.mark.parametrize(
     "entry",
-    [2 + sp.Abs(X - sp.Rational(1, 50)), 2 + sp.Max(X + Y - sp.sqrt(3) / 40, 0), 3 - sp.exp(X) * sp.Abs(sp.sin(Y))],
+    [
+        2 + sp.Abs(X - sp.Rational(1, 50)),
+        2 + sp.Max(X + Y - sp.sqrt(3) / 40, 0),
+        3 - sp.exp(X) * sp.Abs(sp.sin(Y)),
+        4 + sp.asin(sp.sin(40 * X)),
+        4 + sp.exp(Y) * sp.acos(sp.cos(X - sp.Rational(1, 50))),
+        4 + sp.cos(sp.asin(sp.sin(40 * X + Y))),
+        2 + sp.asin(1 - X**2),
+        2 + sp.acos(2 * (X + 1) / (1 + (X + 1) ** 2)),
+        2 + sp.sqrt(1 - sp.sin(40 * X) ** 2),
+        2 + sp.sqrt(2 - 2 * sp.cos(X)),
+        2 + sp.sqrt(X**2 - 2 * X * Y + Y**2),
+        2 + sp.sqrt(sp.Abs(20 * X - 1)),  # an infinite slope
+        2 + sp.Piecewise((X, X > 0), (sp.sin(2 * X), True)),
+    ],
     ids=str,
 )
 def test_a_kink_of_the_inertia_refutes_h1_where_one_sided_derivatives_differ(entry):
@@ -255,7 +269,12 @@ def test_a_kink_of_the_inertia_refutes_h1_where_one_sided_derivatives_differ(ent
         (2 + sp.tan(20 * X), "not bounded"),
         (2 + sp.sqrt(X + sp.Rational(1, 50)), "not real"),
         (20 + sp.log(X + sp.Rational(1, 50)), "not real"),
+        (2 + sp.sqrt(X), "not real"),
+        (5 + sp.asin(1 + X), "not real"),
         (2 + sp.sign(X - Y - sp.Rational(1, 70)), "not continuous"),
+        (4 + sp.atan(sp.tan(40 * X)), "not continuous"),
+        (4 + sp.atan(1 / (X - sp.Rational(1, 20))), "not continuous"),
+        (4 + sp.Piecewise((X, X > sp.Rational(1, 30)), (0, True)), "not continuous"),
     ],
     ids=str,
 )
@@ -265,14 +284,26 @@ def test_a_pole_a_jump_or_a_value_that_is_not_real_refutes_h1(entry, words):
     assert words in found.sentence
 
 
-@pytest.mark.parametrize("entry", [2 + X * sp.Abs(X), 2 + sp.sqrt(X**2 + Y**2), 2 + sp.Max(X, Y, 0)], ids=str)
+@pytest.mark.parametrize(
+    "entry",
+    [
+        2 + X * sp.Abs(X),
+        2 + sp.sqrt(X**2 + Y**2),
+        2 + sp.Max(X, Y, 0),
+        2 + X * sp.sqrt(sp.Abs(X)),
+        2 + sp.asin(sp.sin(40 * X)) + sp.acos(sp.sin(40 * X)),
+        2 + sp.Piecewise((X**2, X > 0), (X**3, True)),
+    ],
+    ids=str,
+)
 def test_what_structure_does_not_tell_is_left_undecided(entry):
-    """The first is C^1 and the others are not."""
+    """The second and the third are not C^1, the others are."""
     assert check_hypotheses(plane(M=((1, 0), (0, entry))))["H1"].status is UNDECIDED
 
 
 def test_singularities_outside_the_ball_do_no_harm():
     entry = 2 + sp.Abs(X - 1) + 1 / (Y + 2) + sp.log(1 + X) + sp.sqrt(X + HALF) + sp.asin(X) + sp.atan2(Y, 1 + X)
+    entry += sp.asin(sp.sin(10 * X)) + sp.acos(sp.cos(X + HALF)) + sp.sqrt(2 + 2 * sp.cos(Y)) + sp.atan(sp.tan(X + Y))
     state = plane(M=((1, 0), (0, entry)))
     found = check_hypotheses(state)
     assert found["H1"].status is PROVED

@@ -1,164 +1,129 @@
 """Smoothness of formulas on a ball, from their structure: every part is analytic but at known singularities.
 
-Quotients, roots, logarithms, inverse functions, |.|, sign, Min and Max each have a set on which they are not analytic;
-a formula whose parts stay away from theirs is analytic. A part that meets its own refutes smoothness only where the
-formula is shown to inherit the kink, the jump or the pole.
+A formula whose parts stay away from theirs (painleve.theory.hypotheses.singularities) is analytic. A part that meets
+its own refutes smoothness only where the formula is shown to inherit the kink, the jump or the pole.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from enum import Enum
-from functools import reduce
+from collections.abc import Sequence
 
 import sympy as sp
+from flint import arb
 
 from painleve.theory.hypotheses.claims import Claim, ClaimKind, ClaimStatus, Decision, decide
 from painleve.theory.hypotheses.findings import Finding
 from painleve.theory.hypotheses.region import Place, Region
+from painleve.theory.hypotheses.singularities import Jump, Kink, Level, Singularity, plain, singularities
 
 __all__ = ["Level", "check_smoothness"]
-
-_ENTIRE = (sp.sin, sp.cos, sp.exp, sp.sinh, sp.cosh, sp.tanh, sp.atan)
-
-
-class Level(Enum):
-    """How smooth a formula is to be; analytic formulas are of every class C^n, with locally Lipschitz derivatives."""
-
-    CONTINUOUS = "continuous"
-    ANALYTIC = "analytic"
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Singularity:
-    """The part `node` is smooth where `argument` meets `kind`; no kind means that nothing is known of it."""
-
-    node: sp.Expr
-    argument: sp.Expr
-    kind: ClaimKind | None
-
-    @property
-    def claim(self) -> Claim:
-        assert self.kind is not None
-        return Claim(kind=self.kind, expressions=(self.argument,))
 
 
 def check_smoothness(region: Region, what: str, expressions: Sequence[sp.Expr], level: Level) -> Finding:
     """Whether all the expressions, which the sentence calls `what`, have that smoothness on the ball."""
-    plain = [_plain(e) for e in expressions]
-    singularities = _singularities(region, plain, level)
-    for singularity in singularities:
+    simple = [plain(e) for e in expressions]
+    found = singularities(region, simple, level)
+    for singularity in found:
         if singularity.kind is None:
             return Finding(status=ClaimStatus.UNDECIDED, sentence=f"nothing is known of {singularity.node} in {what}")
-    decisions = [(s, decide(region, s.claim)) for s in singularities]
+    claims = {s.claim: decide(region, s.claim) for s in found}
     for status in (ClaimStatus.REFUTED, ClaimStatus.UNDECIDED, ClaimStatus.SUPPORTED):
-        for singularity, decision in decisions:
-            if decision.status is status:
-                return _open_finding(region, what, plain, level, singularity, decision)
-    named = ", ".join(_shown(s.argument) for s, _ in decisions)
+        these = [s for s in found if claims[s.claim].status is status]
+        if these:
+            return _open_finding(region, what, simple, level, these, claims)
+    named = ", ".join(_shown(claim.expressions[0]) for claim in claims)
     why = f": on the ball no singularity is met by {named}" if named else ": no part of it has a singularity"
     return Finding(status=ClaimStatus.PROVED, sentence=f"{what} is {level.value}{why}")
 
 
 def _open_finding(
-    region: Region, what: str, plain: list[sp.Expr], level: Level, s: _Singularity, decision: Decision
+    region: Region,
+    what: str,
+    simple: list[sp.Expr],
+    level: Level,
+    these: Sequence[Singularity],
+    claims: dict[Claim, Decision],
 ) -> Finding:
-    claim = f"{_shown(s.argument)} {s.claim.kind.value}"
+    """Of the singularities whose claims have the worst status."""
+    first, decision = these[0], claims[these[0].claim]
     if decision.status is ClaimStatus.SUPPORTED:
+        claim = f"{_shown(first.argument)} {first.claim.kind.value}"
         sentence = f"{what} is {level.value} where {claim}, which holds at the {decision.points} points tried"
         return Finding(status=ClaimStatus.SUPPORTED, sentence=sentence)
-    if decision.status is ClaimStatus.REFUTED and decision.place is not None:
-        broken = _breaks(region, plain, s, decision.place)
+    for singularity in these if decision.status is ClaimStatus.REFUTED else ():
+        place = claims[singularity.claim].place
+        broken = _breaks(region, simple, singularity, place) if place is not None else None
         if broken is not None:
-            return Finding(status=ClaimStatus.REFUTED, sentence=f"{what} {broken}", place=decision.place)
+            return Finding(status=ClaimStatus.REFUTED, sentence=f"{what} {broken[0]} at {broken[1]}", place=broken[1])
     return Finding(
         status=ClaimStatus.UNDECIDED,
-        sentence=f"whether {what} is {level.value} where {_shown(s.node)} is not is undecided",
+        sentence=f"whether {what} is {level.value} where {_shown(first.node)} is not is undecided",
         place=decision.place,
     )
 
 
-def _plain(expression: sp.Expr) -> sp.Expr:
-    """Tangents and the like as quotients, Min and Max by |.|: fewer kinds of singularity."""
-    rules: dict[type, Callable[..., sp.Expr]] = {
-        sp.tan: lambda x: sp.sin(x) / sp.cos(x),
-        sp.cot: lambda x: sp.cos(x) / sp.sin(x),
-        sp.sec: lambda x: 1 / sp.cos(x),
-        sp.csc: lambda x: 1 / sp.sin(x),
-        sp.Min: lambda *x: reduce(lambda a, b: (a + b - sp.Abs(a - b)) / 2, x),
-        sp.Max: lambda *x: reduce(lambda a, b: (a + b + sp.Abs(a - b)) / 2, x),
-    }
-    for function, rule in rules.items():
-        expression = expression.replace(function, rule)
-    return expression
-
-
-def _singularities(region: Region, expressions: Sequence[sp.Expr], level: Level) -> list[_Singularity]:
-    """Inner parts first, each set of points once."""
-    found: dict[tuple[ClaimKind | None, sp.Expr], _Singularity] = {}
-    for expression in expressions:
-        for node in sp.postorder_traversal(expression):
-            for singularity in _of_node(region, node, level):
-                found.setdefault((singularity.kind, singularity.argument), singularity)
-    return list(found.values())
-
-
-def _of_node(region: Region, node: sp.Expr, level: Level) -> Iterator[_Singularity]:
-    if node.is_Add or node.is_Mul or node.is_Atom or node.func in _ENTIRE:
-        return
-    argument, kind = node.args[0], None
-    smooth = level is Level.ANALYTIC
-    if node.is_Pow and node.exp.is_Integer:
-        if node.exp > 0:
-            return
-        kind = ClaimKind.NONZERO
-    elif node.is_Pow and node.exp.is_Rational:
-        kind = ClaimKind.POSITIVE if smooth or node.exp < 0 else ClaimKind.NONNEGATIVE
-    elif node.func is sp.log:
-        kind = ClaimKind.POSITIVE
-    elif node.func in (sp.asin, sp.acos):
-        argument, kind = 1 - argument**2, ClaimKind.POSITIVE if smooth else ClaimKind.NONNEGATIVE
-    elif node.func is sp.atan2:  # the cut is where y = 0 and x <= 0
-        y, x = node.args
-        argument, kind = sp.sqrt(x**2 + y**2) + x, ClaimKind.POSITIVE
-    elif node.func in (sp.Abs, sp.sign):
-        if not region.used([argument]) or (node.func is sp.Abs and not smooth):
-            return
-        kind = ClaimKind.NONZERO
-    yield _Singularity(node=node, argument=argument, kind=kind)
-
-
-def _breaks(region: Region, expressions: Sequence[sp.Expr], s: _Singularity, place: Place) -> str | None:
-    """How a formula inherits the singularity at that place, as the end of a sentence; None where it may not."""
-    if s.kind is not ClaimKind.NONZERO:
-        unreal = s.node.func is not sp.atan2 and bool(region.enclose(s.argument, place) < 0)
-        return f"is not real: {_shown(s.argument)} < 0 at {place}" if unreal else None
+def _breaks(region: Region, expressions: Sequence[sp.Expr], s: Singularity, place: Place) -> tuple[str, Place] | None:
+    """How a formula inherits the singularity at that place, or what it is at another one; None where it may not."""
     z = sp.Dummy("z", real=True)
     for expression in expressions:
         if not expression.has(s.node):
             continue
         outer = expression.xreplace({s.node: z})
-        if s.node.func is sp.Abs and _has_kink(region, outer, z, s.argument, place):
-            return f"is not continuously differentiable: {_shown(s.node)} has a kink at {place}"
-        if s.node.func is sp.sign and _jumps(region, outer, z, s.argument, place):
-            return f"is not continuous: {_shown(s.node)} jumps at {place}"
-        if s.node.is_Pow and _has_pole(region, outer, z, place):
-            return f"is not bounded: {_shown(s.argument)} vanishes at {place}"
+        if outer.has(sp.Piecewise):
+            continue  # the part that is broken may not be the one that counts there
+        if s.kind is not ClaimKind.NONZERO:
+            negative = None if s.node.func is sp.atan2 else _negative_place(region, s.argument, place)
+            if negative is not None:
+                return f"is not real: {_shown(s.argument)} < 0", negative
+        elif isinstance(s.how, Kink):
+            if _has_kink(region, outer, z, s.argument, s.how, place):
+                return f"is not continuously differentiable: {_shown(s.node)} has a kink", place
+        elif isinstance(s.how, Jump):
+            broken = _across(region, outer, z, s.argument, s.how, place)
+            if broken is not None:
+                return f"{broken[0]}: {_shown(s.node)} {broken[1]}", place
+        elif _has_pole(region, outer, z, place):
+            return f"is not bounded: {_shown(s.argument)} vanishes", place
     return None
 
 
-def _has_kink(region: Region, outer: sp.Expr, z: sp.Symbol, argument: sp.Expr, place: Place) -> bool:
-    """One-sided derivatives along grad h differ where F(q, |h|) has dF/dz != 0 and grad h != 0."""
-    slope = sp.diff(outer, z).xreplace({z: sp.Integer(0)})
-    smooth = _is_smooth_at(region, outer.xreplace({z: sp.Integer(0)}), place)
-    return smooth and _is_nonzero(region, slope, place) and _is_regular(region, argument, place)
+def _negative_place(region: Region, argument: sp.Expr, place: Place) -> Place | None:
+    """This place, at which the argument is not positive, or another one, if it is negative there."""
+    if _value(region, argument, place) < 0:
+        return place
+    found = decide(region, Claim(kind=ClaimKind.NONNEGATIVE, expressions=(argument,)))
+    return found.place if found.status is ClaimStatus.REFUTED else None
 
 
-def _jumps(region: Region, outer: sp.Expr, z: sp.Symbol, argument: sp.Expr, place: Place) -> bool:
-    sides = [outer.xreplace({z: sp.Integer(side)}) for side in (1, -1)]
-    smooth = all(_is_smooth_at(region, side, place) for side in sides)
-    return smooth and _is_nonzero(region, sides[0] - sides[1], place) and _is_regular(region, argument, place)
+def _has_kink(region: Region, outer: sp.Expr, z: sp.Symbol, argument: sp.Expr, kink: Kink, place: Place) -> bool:
+    """F(q, node) has the one-sided gradients F_q +- F_z slopes; F_z may be infinite, as that of a root is."""
+    if not (_is_regular(region, argument, place) and any(_is_nonzero(region, e, place) for e in kink.slopes)):
+        return False
+    slope = sp.diff(outer, z)
+    roots = [part.exp for part in slope.atoms(sp.Pow) if part.base == z and not part.exp.is_Integer and part.exp < 0]
+    if roots and kink.value == 0:
+        slope = sp.expand(slope * z ** (-min(roots)))  # what the infinite slope leads with
+    smooth = _is_smooth_at(region, outer.xreplace({z: kink.value}), place)
+    return smooth and _is_nonzero(region, slope.xreplace({z: kink.value}), place)
+
+
+def _across(
+    region: Region, outer: sp.Expr, z: sp.Symbol, argument: sp.Expr, jump: Jump, place: Place
+) -> tuple[str, str] | None:
+    """What the formula loses where its two sides meet, and what the part does there; None where it may lose nothing."""
+    sides = [outer.xreplace({z: side}) for side in jump.sides]
+    if not (
+        all(_is_smooth_at(region, side, place) for side in sides)
+        and _is_nonzero(region, jump.given, place)
+        and _is_regular(region, argument, place)
+    ):
+        return None
+    difference = sides[0] - sides[1]
+    if _is_nonzero(region, difference, place):
+        return "is not continuous", "jumps"
+    if _is_regular(region, difference, place):  # the gradients of the two sides differ at a point of both closures
+        return "is not continuously differentiable", "has a kink"
+    return None
 
 
 def _has_pole(region: Region, outer: sp.Expr, z: sp.Symbol, place: Place) -> bool:
@@ -169,16 +134,24 @@ def _has_pole(region: Region, outer: sp.Expr, z: sp.Symbol, place: Place) -> boo
 
 
 def _is_smooth_at(region: Region, expression: sp.Expr, place: Place) -> bool:
-    claims = [s.claim for s in _singularities(region, [expression], Level.ANALYTIC) if s.kind is not None]
-    return all(c.holds([region.enclose(c.expressions[0], place)]) for c in claims)
+    found = singularities(region, [expression], Level.ANALYTIC)
+    return all(s.kind is not None and s.claim.holds([_value(region, s.argument, place)]) for s in found)
 
 
 def _is_nonzero(region: Region, expression: sp.Expr, place: Place) -> bool:
-    return Claim(kind=ClaimKind.NONZERO, expressions=(expression,)).holds([region.enclose(expression, place)])
+    return Claim(kind=ClaimKind.NONZERO, expressions=(expression,)).holds([_value(region, expression, place)])
 
 
 def _is_regular(region: Region, expression: sp.Expr, place: Place) -> bool:
     return any(_is_nonzero(region, sp.diff(expression, x), place) for x in region.state.scene.q)
+
+
+def _value(region: Region, expression: sp.Expr, place: Place) -> arb:
+    """NaN where there is no ball arithmetic for it: of an infinite derivative, say."""
+    try:
+        return region.enclose(expression, place)
+    except (TypeError, ValueError):
+        return arb.nan()
 
 
 def _shown(expression: sp.Expr, limit: int = 60) -> str:
