@@ -13,7 +13,7 @@ from painleve.cli import main
 from painleve.core.motion_codes import MemberOutcome
 from painleve.dynamics.simulate import simulate
 from painleve.dynamics.start import Start
-from painleve.kernels.motion import make_motion
+from painleve.kernels.motion.compiled import make_motion
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 from painleve.store import load

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from painleve.core.motion_codes import Change, Ending, MemberOutcome
+from painleve.core.motion_codes import Change, Ending, FixedStep, MemberOutcome
+from painleve.core.stepping import SteppingMethod
 from painleve.dynamics.ensemble import _Task, run_ensemble
-from painleve.dynamics.schemes import load_scheme
 from painleve.dynamics.simulate import simulate
 from painleve.dynamics.start import as_start
 from painleve.errors import InputError
@@ -85,9 +85,8 @@ def test_initial_states_fill_the_two_balls() -> None:
     start = as_start(PARADOX)
     task = _Task(
         start=start,
-        method=load_scheme("contact_dynamics"),
-        theta=0.0,
-        tolerance=0.0,
+        scheme="contact_dynamics",
+        method=SteppingMethod(int(FixedStep.CONTACT_DYNAMICS), 0.0, 0.0),
         step=1e-3,
         until=1.0,
         count=4000,

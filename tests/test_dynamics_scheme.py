@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 from painleve.core import steps
 from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Change, Ending
+from painleve.core.stepping import SteppingMethod
 from painleve.dynamics.proposition1 import check_proposition1
 from painleve.dynamics.schemes import SCHEME_NAMES, load_scheme
 from painleve.dynamics.simulate import simulate
@@ -214,7 +215,7 @@ def test_the_contact_tolerance_makes_contact_at_that_distance() -> None:
 def test_the_step_compiled_and_in_python_are_the_same_function() -> None:
     motion, start = block_motion()
     for code in range(5):
-        arguments = (code, 0.5, 0.0, 0.0, 1e-2, start.q, start.u, start.p)
+        arguments = (SteppingMethod(code, 0.5, 0.0), 0.0, 1e-2, start.q, start.u, start.p)
         compiled, plain = motion.step(*arguments), motion.step.py_func(*arguments)
         for x, y in zip(compiled, plain, strict=True):
             np.testing.assert_allclose(x, y, rtol=1e-15, atol=1e-15)

@@ -12,7 +12,7 @@ from scene_files import TEMPLATE, read, spatial
 
 import painleve
 from painleve.errors import InputError
-from painleve.kernels.motion_source import motion_source
+from painleve.kernels.motion.source import motion_source
 from painleve.kernels.rows import rows_of
 from painleve.kernels.source import scene_source
 from painleve.mechanics.derive import derive

@@ -21,7 +21,7 @@ from painleve.mechanics.state import make_state
 from painleve.store import load
 from painleve.sweep import map_regimes
 from studies.reference import claim
-from studies.reference.compare import FactStatus, Finding, compare
+from studies.reference.compare import FactStatus, FoundValue, compare
 from studies.reference.contact import regime, step_solutions
 from studies.reference.facts import Fact, FactKind, load_facts
 from studies.reference.rod import eigenvalue_ratio
@@ -121,14 +121,14 @@ def test_a_decimal_is_reproduced_only_if_both_ends_of_the_error_round_to_it() ->
         (0.8145551, 1e-9, FactStatus.DIFFERS),
         (math.nan, 0.0, FactStatus.DIFFERS),
     ):
-        assert compare(fact, Finding(value=value, error=error, route="")).status is status
+        assert compare(fact, FoundValue(value=value, error=error, route="")).status is status
 
 
 def test_routes_that_disagree_reproduce_nothing_and_an_obstacle_is_no_agreement() -> None:
     fact = FACTS[0]
     for gap, status in ((1e-13, FactStatus.REPRODUCED), (1e-11, FactStatus.DIFFERS), (math.nan, FactStatus.DIFFERS)):
-        assert compare(fact, Finding(value=sp.Rational(4, 3), route="", gap=gap)).status is status
-    blocked = Finding(value=sp.Rational(4, 3), route="", obstacle="another model")
+        assert compare(fact, FoundValue(value=sp.Rational(4, 3), route="", gap=gap)).status is status
+    blocked = FoundValue(value=sp.Rational(4, 3), route="", obstacle="another model")
     assert compare(fact, blocked).status is FactStatus.NOT_REPRODUCIBLE
 
 

@@ -7,7 +7,7 @@ that no affordable polynomial is accurate, the rows are evaluated plainly; nothi
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Literal
@@ -21,10 +21,13 @@ from painleve.core.rows import RowParts
 from painleve.core.space.offset import SpaceBase
 from painleve.core.space.polygon_offset import PolygonBase
 from painleve.core.taylor import Polynomials, monomial_block, polynomial_block, sparse_polynomials
+from painleve.errors import InputError
 from painleve.exact.balls import ball
-from painleve.exact.jets import jets, monomials
+from painleve.exact.jets import Jet, jets, monomials
 from painleve.kernels.compiled import Kernels, make_kernels
+from painleve.kernels.rows import Rows
 from painleve.theory.limit_set import LimitSet
+from painleve.theory.sections.listed import theory_of
 
 __all__ = ["Arithmetic", "Expansion", "LocalProblem", "make_local_problem"]
 
@@ -100,6 +103,11 @@ class LocalProblem:
         return ball(self.limit.multiplier, bits=BITS)
 
     @cached_property
+    def analytic(self) -> bool:
+        """Whether the rows have a Taylor expansion at q; where they have none, the table holds NaN."""
+        return bool(np.isfinite(self.table).all())
+
+    @cached_property
     def degrees(self) -> np.ndarray:
         return np.array([sum(powers) for powers in self.powers], dtype=int)
 
@@ -119,6 +127,10 @@ class LocalProblem:
         is not small the rows are evaluated plainly, unless "taylor" is asked for.
         """
         if arithmetic == "plain":
+            return None
+        if not self.analytic:
+            if arithmetic == "taylor":
+                raise InputError("arithmetic: the scene is not analytic at this state, so taylor has nothing to expand")
             return None
         highest = int(self.degrees.max(initial=0))
         orders = range(min(2, highest), highest + 1)
@@ -151,6 +163,8 @@ class LocalProblem:
         of lower degree that a row does without; relative to the row's greatest term."""
         highest = int(orders.max(initial=0))
         enclosed = _enclosed_coefficients(self, eps, highest + 1)
+        if enclosed is None:
+            return np.full(len(self.table), np.inf)
         size = np.abs(self.table) * float(eps) ** self.degrees
         skipped = np.where((self.degrees > orders[:, None]) & (self.degrees <= highest), size, 0.0).sum(axis=1)
         greatest = size.max(axis=1, initial=0.0)
@@ -181,15 +195,19 @@ class LocalProblem:
 
 
 @lru_cache(maxsize=256)
-def _enclosed_coefficients(problem: LocalProblem, eps: float, degree: int) -> np.ndarray:
-    """For each varying row, the sum over monomials of that degree of the largest coefficient anywhere on the ball."""
+def _enclosed_coefficients(problem: LocalProblem, eps: float, degree: int) -> np.ndarray | None:
+    """For each varying row, the sum over monomials of that degree of the largest coefficient anywhere on the ball;
+    None where a row has no expansion there."""
     state, rows = problem.limit.state, problem.kernels.rows
     variables = [state.scene.q[i] for i in problem.shape]
     point = {s: ball(value, bits=BITS) for s, value in state.substitution.items() if s not in state.scene.u}
     for x in variables:
         point[x] += flint.arb(0, float(eps))
     expressions = [rows.expressions[r] for r in rows.varying]
-    wide = jets(expressions, variables, point, degree, bits=BITS)
+    try:
+        wide = jets(expressions, variables, point, degree, bits=BITS)
+    except InputError:
+        return None
     bounds = [sum((abs(c).upper() for m, c in jet.terms.items() if sum(m) == degree), flint.arb(0)) for jet in wide]
     return np.array([np.nextafter(float(bound.upper()), np.inf) for bound in bounds])
 
@@ -207,7 +225,7 @@ def make_local_problem(limit: LimitSet) -> LocalProblem:
     expanded = jets(rows.expressions, variables, configuration, order, bits=BITS)
     powers = tuple(monomials(len(variables), order)[1:])
     table = [[float(expanded[r].terms.get(m, flint.arb(0)).mid()) for m in powers] for r in rows.varying]
-    base = np.array([float(jet.constant().mid()) for jet in expanded])
+    base = np.array([_base_value(rows, r, jet, configuration) for r, jet in enumerate(expanded)])
     if limit.critical:
         base[rows.edge(limit.edge)] = 0.0
     base[rows.parts.g] = 0.0
@@ -236,6 +254,16 @@ def make_local_problem(limit: LimitSet) -> LocalProblem:
     )
 
 
+def _base_value(rows: Rows, r: int, jet: Jet, configuration: Mapping[sp.Symbol, flint.arb]) -> float:
+    """A row at the base state, also where it is defined there and has no expansion."""
+    value = jet.constant()
+    if not value.is_finite():
+        value = ball(rows.expressions[r], configuration, bits=BITS)
+    if not value.is_finite():
+        raise InputError(f"{rows.names[r]} cannot be told from an undefined value at this state; choose another one")
+    return float(value.mid())
+
+
 def _order(variables: int) -> int:
     if variables == 0:
         return 1
@@ -249,12 +277,9 @@ def _floats(limit: LimitSet, values: Sequence[sp.Expr]) -> np.ndarray:
 
 def _base_impulse(limit: LimitSet) -> np.ndarray | SpaceBase | PolygonBase:
     """-G^-1 v_c at the base state, whether or not it is in the cone (0 without friction)."""
-    state, d = limit.state, make_kernels(limit.state.scene).derivation
+    state = limit.state
     if state.scene.contact.section.dimension == 2:
         return space_base(limit, BITS)
     if not state.scene.contact.section.dimension:
         return np.zeros(2)
-    slip = (state.scene.contact.tangents.T * sp.Matrix(state.scene.u))[0, 0]
-    (b,), (C,) = d.couplings, d.compliance
-    determinant = d.a * C - b**2
-    return np.array([state.number(slip * b / determinant), state.number(-slip * d.a / determinant)])
+    return np.array([state.number(x) for x in theory_of(state.scene.contact).sticking_impulse(state)])

@@ -14,7 +14,7 @@ import flint
 import numpy as np
 
 from painleve.asymptotics.local import BITS, LocalProblem
-from painleve.asymptotics.space.member import Contact, conic_impulse, polygon_impulse
+from painleve.asymptotics.space.member import ContactBalls, conic_impulse, polygon_impulse
 from painleve.core.codes import ContactMode
 from painleve.exact.balls import ball, make_ball_function
 from painleve.sets import Bounds
@@ -163,7 +163,7 @@ def _law_in_space(
     parts = problem.parts
     (H_1, H_2), (Y_1, Y_2) = ([rows[part] for part in columns] for columns in (parts.H, parts.Y_t))
     v_t = _dot(H_1, v), _dot(H_2, v)
-    contact = Contact(a=rows[parts.a], b=rows[parts.b], C=rows[parts.C], v=(v_n, *v_t))
+    contact = ContactBalls(a=rows[parts.a], b=rows[parts.b], C=rows[parts.C], v=(v_n, *v_t))
     critical, n = problem.critical_edge if at_base else 0, len(rows[parts.section]) // 3
     if n:
         p, s = rows[parts.section][:n], rows[parts.section][n:]

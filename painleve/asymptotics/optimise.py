@@ -28,6 +28,7 @@ from painleve.core.branch_excess import REACH
 from painleve.core.codes import ContactMode
 from painleve.errors import InputError
 from painleve.sets import Bounds, excess_of_segment_from_profile
+from painleve.theory.domain import check_domain
 from painleve.theory.limit_set import LimitSet
 
 __all__ = ["OptimiseOptions", "optimise_distance"]
@@ -53,12 +54,13 @@ def optimise_distance(limit: LimitSet, eps: float, options: OptimiseOptions | No
     """Both excesses by optimisation: e(A_eps, A) is bounded from below by a true member at the maximum found, whose
     estimate and error are in the settings; e(A, A_eps) from above by witnesses, or by the nearest members found.
 
-    Raises InputError for eps <= 0, a state whose limit set is undecided and, in the plane, more than two shape
-    coordinates.
+    Raises InputError for eps <= 0, a state whose limit set is undecided, a ball on which the law is not proved to be
+    defined (painleve.theory.domain) and, in the plane, more than two shape coordinates.
     """
     options, eps = options or OptimiseOptions(), check_eps(eps)
     if limit.kind == "undecided":
         raise InputError(f"state {limit.state.label}: no distance to a limit set that is undecided: {limit.reason}")
+    check_domain(limit.state, eps)
     if limit.state.scene.contact.section.dimension == 2:
         return optimise_in_space(limit, eps, starts=options.starts, arithmetic=options.arithmetic)
     problem = make_local_problem(limit)

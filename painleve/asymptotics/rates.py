@@ -114,6 +114,8 @@ def rate(limit: LimitSet) -> Rate:
             f"rate: scene {limit.state.scene.name} has {len(problem.shape)} coordinates on which the law "
             "depends; at most 2 are searched"
         )
+    if not problem.analytic:
+        raise InputError(f"rate: scene {limit.state.scene.name} is not analytic at this state: it has no derivatives")
     search = _FirstOrder(problem, isolated)
     found = search.best(search.branches, search.kind)
     sentence = _sentence(limit, isolated)

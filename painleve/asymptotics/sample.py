@@ -24,6 +24,7 @@ from painleve.core.sampling import BLOCK, Sampler
 from painleve.core.taylor import no_polynomials
 from painleve.errors import InputError, nearest
 from painleve.sets import Bounds, excess_of_segment_from_profile
+from painleve.theory.domain import check_domain
 from painleve.theory.limit_set import LimitSet
 
 __all__ = ["SAMPLERS", "SampleOptions", "check_eps", "sample_distance", "sample_members"]
@@ -194,11 +195,13 @@ def sample_distance(limit: LimitSet, eps: float, options: SampleOptions | None =
     """Bounds on both excesses from members of A_eps: e(A_eps, A) from below, e(A, A_eps) from above.
 
     The farthest member is evaluated again in ball arithmetic, so the lower bound is that of a true member.
-    Raises InputError for eps <= 0 and for a state whose limit set is undecided.
+    Raises InputError for eps <= 0, for a state whose limit set is undecided, and where the law is not proved to be
+    defined on the ball (painleve.theory.domain).
     """
     options, eps = options or SampleOptions(), check_eps(eps)
     if limit.kind == "undecided":
         raise InputError(f"state {limit.state.label}: no distance to a limit set that is undecided: {limit.reason}")
+    check_domain(limit.state, eps)
     problem = make_local_problem(limit)
     stream = _Stream(problem, eps, options)
     tally = _SampleTally()
@@ -226,9 +229,10 @@ def sample_distance(limit: LimitSet, eps: float, options: SampleOptions | None =
 
 def sample_members(limit: LimitSet, eps: float, options: SampleOptions | None = None) -> dict[str, np.ndarray]:
     """The samples themselves, for pictures: dq, dv (n, d), S - u- (n, d) and branch (n,)."""
-    options = options or SampleOptions(samples=BLOCK)
+    options, eps = options or SampleOptions(samples=BLOCK), check_eps(eps)
+    check_domain(limit.state, eps)
     problem = make_local_problem(limit)
-    stream = _Stream(problem, check_eps(eps), options)
+    stream = _Stream(problem, eps, options)
     blocks = [stream.block(start)[:2] for start in range(0, options.samples, BLOCK)]
     dq = np.concatenate([b[0].T for b in blocks])[: options.samples]
     dv = np.concatenate([b[1].T for b in blocks])[: options.samples]

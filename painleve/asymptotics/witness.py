@@ -21,6 +21,7 @@ from painleve.asymptotics.space.witness import path_bound, path_members
 from painleve.core.codes import ContactMode
 from painleve.errors import InputError
 from painleve.sets import Bounds
+from painleve.theory.domain import check_domain
 from painleve.theory.limit_set import LimitSet
 
 __all__ = ["Family", "Witness", "find_family", "find_witness"]
@@ -67,7 +68,8 @@ class Family:
 def find_witness(limit: LimitSet, fraction: float, eps: float, *, within: float) -> Witness:
     """A witness for v_bar with distance <= `within`, if there is one.
 
-    Raises InputError for a fraction outside [0, 1], eps or `within` <= 0, and for a v_bar that is not in A.
+    Raises InputError for a fraction outside [0, 1], eps or `within` <= 0, a v_bar that is not in A, and a ball on which
+    the law is not proved to be defined (painleve.theory.domain).
     """
     _check(limit, fraction, eps, within)
     problem = make_local_problem(limit)
@@ -113,6 +115,7 @@ def _check(limit: LimitSet, fraction: float, eps: float, within: float) -> None:
     for name, value in (("eps", eps), ("within", within)):
         if not (np.isfinite(value) and value > 0.0):
             raise InputError(f"{name}: {value} must be a positive number")
+    check_domain(limit.state, eps)
 
 
 def _zeros(problem: LocalProblem) -> list[flint.arb]:
@@ -138,6 +141,8 @@ def _towards_sticking(problem: LocalProblem, eps: float, within: float) -> tuple
 
 def _positive_neighbours(problem: LocalProblem, eps: float) -> Iterator[list[flint.arb]]:
     """Exact offsets of configurations in the ball, nearer and nearer to q, with g >= 0 and gamma > 0 proved."""
+    if not problem.analytic:
+        return  # no derivatives say in which directions gamma grows
     directions = list(_directions(problem))
     ratio, smallest = (SPACE_STEP, SMALLEST_SPACE_STEP) if _in_space(problem) else (STEP, SMALLEST_STEP)
     step = 0.5

@@ -2,7 +2,7 @@
 
 A block is a C-ordered array (coordinates, samples). Work goes row by row, so that every inner loop runs over contiguous
 samples, without branches, and vectorises. Vectors are formed in the unit ball and scaled last: no square underflows
-however small the radius.
+however small the radius. (docs/theory.md, section 4.2.)
 """
 
 from __future__ import annotations

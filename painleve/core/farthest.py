@@ -6,6 +6,7 @@ this is a trust-region problem, whose maxima are the global one, nu > sigma_1 in
 more, sigma_2 < nu < sigma_1 (J. M. Martinez, SIAM J. Optim. 4 (1994) 159-176).
 
 Loops are written out: for such small arrays that runs, and compiles, many times faster than array expressions.
+(docs/theory.md, section 4.4.)
 """
 
 import math

@@ -1,5 +1,5 @@
 """The supremum over one polyline of the distance to another, for polylines that are graphs: ordered by their first
-coordinate, time."""
+coordinate, time. (docs/theory.md, section 7.5.)"""
 
 import math
 

@@ -2,6 +2,7 @@
 
 Point number n has the coordinates frac(shift_j + n alpha_j). Shifts and generators are 64-bit fractions (a uint64 k
 stands for k / 2^64), so that addition modulo 1 is the wrapping addition of integers and loses nothing at any index.
+(docs/theory.md, section 4.2.)
 """
 
 from __future__ import annotations

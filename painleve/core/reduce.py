@@ -5,7 +5,7 @@ end (so that both are accurate near their end), and `across2`, its squared dista
 smaller index, so that the result does not depend on the order in which lanes are merged.
 
 Records fall seldom. So a first pass, which vectorises, counts the samples that beat the records of the blocks before;
-only where there are any does a second one go sample by sample.
+only where there are any does a second one go sample by sample. (docs/theory.md, section 4.1.)
 """
 
 import math

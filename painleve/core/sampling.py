@@ -3,7 +3,7 @@
 Only the shape coordinates are sampled, those on which the law depends. The coordinates that merely carry the contact
 enter through `room`, what they add to g at the sample. A sample of A_eps may choose them: the low-discrepancy points
 take the greatest room that the ball leaves, so that each is in contact wherever some q of the ball with this shape is;
-uniform points draw the one combination of them that matters.
+uniform points draw the one combination of them that matters. (docs/theory.md, section 4.2.)
 """
 
 import math

@@ -2,6 +2,7 @@
 
 A pass over a block costs as much for its loads and stores as for its arithmetic, so rows take up to four terms at a
 time, terms that vanish are left out, and a row that is a multiple of another is made from it.
+(docs/theory.md, section 8.2.)
 """
 
 from __future__ import annotations

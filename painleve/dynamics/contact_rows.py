@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from painleve.kernels.motion import Motion
+from painleve.kernels.motion.compiled import Motion
 from painleve.mechanics.friction import Polygon
 
 __all__ = ["directions", "gamma_along", "nearest_impulse", "responses", "tangential_names"]

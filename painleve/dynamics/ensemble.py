@@ -16,6 +16,7 @@ import numpy as np
 
 from painleve.core.ball_maps import uniform_ball, uniforms_needed
 from painleve.core.motion_codes import Ending, MemberOutcome
+from painleve.core.stepping import Fates, SteppingMethod
 from painleve.core.streams import uniform_block
 from painleve.dynamics.grid import check_step, check_until
 from painleve.dynamics.scheme import Stepped
@@ -121,9 +122,8 @@ class _Task:
     """One ensemble: what its members have in common and how member i differs."""
 
     start: Start
-    method: Stepped
-    theta: float
-    tolerance: float
+    scheme: str
+    method: SteppingMethod
     step: float
     until: float
     count: int
@@ -141,24 +141,10 @@ class _Task:
         """Members first ... first + lane - 1, as far as there are any."""
         n = min(self.lane, self.count - first)
         h, q, u = self.draw(first, n)
-        outcome, time, steps = np.empty(n, np.int8), np.empty(n), np.empty(n, np.int64)
+        fates = Fates(outcome=np.empty(n, np.int8), time=np.empty(n), steps=np.empty(n, np.int64))
         s = self.start
-        s.motion.run_members(
-            int(self.method.code),
-            self.theta,
-            self.tolerance,
-            s.rounding,
-            s.t,
-            h,
-            self.until,
-            q,
-            u,
-            s.p,
-            outcome,
-            time,
-            steps,
-        )
-        return first, Members(step=h, outcome=outcome, time=time, steps=steps)
+        s.motion.run_members(self.method, s.rounding, s.t, self.until, h, q, u, s.p, fates)
+        return first, Members(step=h, **fates._asdict())
 
     def draw(self, first: int, n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Steps (n,) and initial q, u (n, d)."""
@@ -204,15 +190,14 @@ def run_ensemble(
     Raises InputError for bad input.
     """
     beginning = as_start(start)
-    method = scheme_for(beginning.scene, scheme)
-    if not isinstance(method, Stepped):
+    stepped = scheme_for(beginning.scene, scheme)
+    if not isinstance(stepped, Stepped):
         raise InputError(f"scheme: ensembles need a fixed-step scheme, and {scheme} is not one")
-    settings = method.settings(contact_tolerance, options)
+    settings = stepped.settings(contact_tolerance, options)
     task = _Task(
         start=beginning,
-        method=method,
-        theta=method.theta(settings),
-        tolerance=contact_tolerance,
+        scheme=scheme,
+        method=SteppingMethod(int(stepped.code), stepped.theta(settings), contact_tolerance),
         step=check_step(step),
         until=check_until(until),
         count=_checked_count(count),
@@ -279,7 +264,7 @@ def _collect(task: _Task, threads: int | None, keep: bool, progress: Callable[[i
     varied = {"spread": task.spread, "window": task.window, "ball": task.ball}
     return Ensemble(
         start=task.start,
-        scheme=task.method.name,
+        scheme=task.scheme,
         ending=ending,
         steps=tally.steps,
         resolution=width,
@@ -291,8 +276,8 @@ def _collect(task: _Task, threads: int | None, keep: bool, progress: Callable[[i
             "until": task.until,
             "count": task.count,
             "seed": task.seed,
-            "contact_tolerance": task.tolerance,
-            "theta": task.theta,
+            "contact_tolerance": task.method.tolerance,
+            "theta": task.method.theta,
             **{name: value for name, value in varied.items() if value is not None},
         },
     )

@@ -8,71 +8,62 @@ import numpy as np
 
 from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Ending
+from painleve.core.stepping import SteppingMethod, Track
 from painleve.dynamics.grid import TimeGrid
 from painleve.dynamics.start import Start
 from painleve.dynamics.trajectory import Trajectory
 
-__all__ = ["run_fixed_step"]
+__all__ = ["empty_track", "run_fixed_step"]
 
 CHUNK = 100_000  # steps: some ten milliseconds
 
 
+def empty_track(start: Start, steps: int) -> Track:
+    """Room for that many steps from the start, which is in its first row."""
+    n, d, k = steps + 1, start.scene.dimension, start.scene.friction_dimension
+    codes = {name: np.zeros(n, np.int8) for name in ("branch", "change", "several")}
+    track = Track(q=np.zeros((n, d)), u=np.zeros((n, d)), r=np.zeros((n, 1 + max(1, k))), **codes)
+    track.q[0], track.u[0] = start.q, start.u
+    return track
+
+
 def run_fixed_step(
     name: str,
-    code: int,
-    theta: float,
+    method: SteppingMethod,
     lag: float,
     start: Start,
     grid: TimeGrid,
-    tolerance: float,
     progress: Callable[[float], None],
 ) -> Trajectory:
-    """Step through the grid with the compiled scheme of that code, to its end or to the first step that fails.
+    """Step through the grid with a compiled scheme, to its end or to the first step that fails.
 
     `progress` hears of the time covered after each chunk; the steps do not depend on how they are cut into chunks.
     """
-    n, d, k = len(grid.h), start.scene.dimension, start.scene.friction_dimension
-    q, u, r = np.zeros((n + 1, d)), np.zeros((n + 1, d)), np.zeros((n + 1, 1 + max(1, k)))
-    branch, change, several = (np.zeros(n + 1, np.int8) for _ in range(3))
-    q[0], u[0] = start.q, start.u
+    n, track = len(grid.h), empty_track(start, len(grid.h))
     done, since, ending = 0, 0, Ending.REACHED_END
     try:
         while done < n and ending is Ending.REACHED_END:
             rest = slice(done, min(done + CHUNK, n) + 1)
-            steps = grid.h[done : done + CHUNK]
-            taken, status, since = start.motion.run(
-                code,
-                theta,
-                tolerance,
-                since,
-                grid.t[rest],
-                steps,
-                start.p,
-                q[rest],
-                u[rest],
-                r[rest],
-                branch[rest],
-                change[rest],
-                several[rest],
-            )
+            part, h = Track(*(column[rest] for column in track)), grid.h[done : done + CHUNK]
+            taken, status, since = start.motion.run(method, since, grid.t[rest], h, start.p, part)
             done, ending = done + taken, Ending(status)
             progress(float(grid.t[done] - grid.t[done - taken]))
     except KeyboardInterrupt:
         ending = Ending.INTERRUPTED
-    kept = slice(0, done + 1)
-    statistics = {b.label: int((branch[1 : done + 1] == b).sum()) for b in ContactMode}
-    if k < 2:  # in space other solutions of Coulomb's law are not counted
-        statistics["steps_with_several_solutions"] = int((several[kept] > 1).sum())
+    kept = Track(*(column[: done + 1] for column in track))
+    statistics = {b.label: int((kept.branch[1:] == b).sum()) for b in ContactMode}
+    if start.scene.friction_dimension < 2:  # in space other solutions of Coulomb's law are not counted
+        statistics["steps_with_several_solutions"] = int((kept.several > 1).sum())
     return Trajectory(
         scheme=name,
         start=start,
-        settings={"contact_tolerance": tolerance, "theta": theta},
-        t=grid.t[kept],
-        q=q[kept],
-        u=u[kept],
-        r=r[kept],
-        branch=branch[kept],
-        change=change[kept],
+        settings={"contact_tolerance": method.tolerance, "theta": method.theta},
+        t=grid.t[: done + 1],
+        q=kept.q,
+        u=kept.u,
+        r=kept.r,
+        branch=kept.branch,
+        change=kept.change,
         lag=lag,
         ending=ending,
         statistics=statistics,

@@ -65,6 +65,12 @@ class Proposition1:
         """{name: the step with the worst margin}."""
         return {name: self.worst(name)[1] for name in MARGINS}
 
+    def attributes(self) -> dict[str, str | float]:
+        """The worst margins as attributes of a dataset, and what they are relative to."""
+        worst: dict[str, str | float] = {f"proposition1_{name}": margin for name, margin in self.as_dict().items()}
+        sentence = f"the worst of all steps, positive where a statement fails; {MARGIN_SCALE}"
+        return worst | {"proposition1_margins": sentence}
+
 
 def check_proposition1(
     start: Start,

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from painleve.core.motion_codes import FixedStep
+from painleve.core.stepping import SteppingMethod
 from painleve.dynamics.fixed_step import run_fixed_step
 from painleve.dynamics.grid import TimeGrid
 from painleve.dynamics.start import Start
@@ -74,8 +75,8 @@ class Stepped(Scheme):
     def run(
         self, start: Start, grid: TimeGrid, tolerance: float, options: Mapping[str, float], progress: Progress
     ) -> Trajectory:
-        theta = self.theta(options)
-        return run_fixed_step(self.name, int(self.code), theta, self.lag(theta), start, grid, tolerance, progress)
+        method = SteppingMethod(int(self.code), self.theta(options), tolerance)
+        return run_fixed_step(self.name, method, self.lag(method.theta), start, grid, progress)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,7 +9,7 @@ import numpy as np
 
 from painleve.errors import InputError, nearest
 from painleve.exact.parse import exact_number
-from painleve.kernels.motion import Motion, make_motion
+from painleve.kernels.motion.compiled import Motion, make_motion
 from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import Number, State, resolve_parameters
 
@@ -36,7 +36,7 @@ class Start:
 
     @property
     def rows(self) -> tuple[float, ...]:
-        """The scene's rows at the start (painleve.kernels.rows)."""
+        """The scene's rows at the start (painleve.core.rows)."""
         return self.motion.rows_at(self.q, self.p)
 
     def tabulate(self, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

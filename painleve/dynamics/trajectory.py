@@ -137,7 +137,12 @@ class Trajectory:
 
     def to_xarray(self) -> xr.Dataset:
         """The trajectory with units and sentences, and the outline of the body where the scene has one."""
-        return record(self)
+        arrays = {name: getattr(self, name) for name in ("t", "q", "u", "r", "branch", "change")}
+        with np.errstate(over="ignore", invalid="ignore"):  # energies of a motion that all but leaves the numbers
+            columns = {**arrays, **self.contact_quantities(), "contact_work": self.contact_work()}
+            facts = {"scheme": self.scheme, "status": self.ending.label, "ending": self.sentence}
+            margins = self.proposition1.attributes() if self.proposition1 else {}
+            return record(self.start, columns, facts | margins)
 
     def plot(self) -> Any:
         """The figure (matplotlib) of the trajectory; a notebook shows it, `painleve.save_figure` keeps it."""

@@ -3,7 +3,7 @@
 With T = tan(s) the sine and the cosine of an angle s are algebraic; so are roots and constants such as sqrt(5). Each
 gets an unknown of its own with the equation that it solves, and resultants eliminate them all but T. What is left is a
 polynomial with whole coefficients whose real roots include the zeros: candidates, to be checked by whoever asked.
-Degrees and numbers of terms are bounded; beyond the bounds there are no candidates.
+Degrees and numbers of terms are bounded; beyond the bounds there are no candidates. (docs/theory.md, section 8.4.)
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 A result contains every value that the expression takes while its symbols stay in their balls; where it may be undefined
 or not real (a root or a logarithm of a ball that reaches below zero, a division by a ball around zero) it is NaN, which
 contains everything. Balls round outwards at a working precision that is global to the process: it is set for each call
-and put back, so two threads must not evaluate at once.
+and put back, so two threads must not evaluate at once. (docs/theory.md, section 8.5.)
 """
 
 from __future__ import annotations

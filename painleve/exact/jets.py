@@ -3,6 +3,7 @@
 From an exact point the coefficients are known to dozens of digits, so that those which vanish there come out as
 zero for every practical purpose, and differences such as g(q + dq) - g(q) are formed without cancellation. From a
 wide ball the same arithmetic encloses the derivatives over a whole box: the remainder of a Taylor form.
+(docs/theory.md, section 8.2.)
 """
 
 from __future__ import annotations
@@ -75,12 +76,19 @@ class Jet:
                     terms[powers] = terms[powers] + x * y if powers in terms else x * y
         return self.with_terms(terms)
 
+    def is_finite(self) -> bool:
+        """Whether all coefficients are known: the function is analytic at the point, or on the ball."""
+        return all(value.is_finite() for value in self.terms.values())
+
     def scale(self, factor: flint.arb) -> Jet:
         return self.with_terms({powers: factor * value for powers, value in self.terms.items()})
 
     def compose(self, series: Callable[[flint.arb_series], flint.arb_series]) -> Jet:
-        """f(jet) for a function of one variable, given by its action on a power series."""
-        outer = series(flint.arb_series([self.constant(), 1], self.order + 1))
+        """f(jet) for a function of one variable, given by its action on a power series; NaN where that has none."""
+        try:
+            outer = series(flint.arb_series([self.constant(), 1], self.order + 1))
+        except ValueError:  # a division by what may be zero
+            outer = flint.arb_series([flint.arb.nan()] * (self.order + 1), self.order + 1)
         zero = (0,) * self.variables
         inner = self.with_terms({powers: value for powers, value in self.terms.items() if powers != zero})
         result = self.with_terms({})
@@ -99,7 +107,9 @@ def jets(
 ) -> list[Jet]:
     """The Taylor polynomials of the expressions in `variables` about the point `values`, up to `order`.
 
-    `values` must have every symbol. Raises InputError for a function that is not analytic at the point.
+    `values` must have every symbol. Coefficients are NaN, which contains everything, where a root, a quotient, a
+    logarithm or an inverse function is not shown to be analytic. Raises InputError for |.| of what may be zero, and for
+    functions and exponents that have no expansion here.
     """
     with _precision(bits, order + 1):
         count = len(variables)

@@ -6,7 +6,7 @@ tangents and exponentials of the numbers that are left, pi, logarithms). Without
 one that is not zero cannot be arbitrarily small: a separation bound says how small (Burnikel, Funke, Mehlhorn, Schirra
 and Schmitt, "A separation bound for real algebraic expressions", Algorithmica 55 (2009) 14-28). With unknowns it is
 zero if it vanishes identically, which as many integer points as its degree demands decide, each by the same bound. The
-work is estimated before it is begun.
+work is estimated before it is begun. (docs/theory.md, section 8.3.)
 """
 
 from __future__ import annotations

@@ -4,6 +4,7 @@ Subdivision: an interval has no zero where the function, or its Taylor form of s
 where the derivative does, and then the signs at its ends tell. What stays undecided down to the least width is a
 cluster: an exact candidate in it at which the derivatives below some order vanish exactly, while the derivative of that
 order excludes zero on the whole cluster, is its only zero; otherwise the cluster is reported as it is.
+(docs/theory.md, section 8.4.)
 """
 
 from __future__ import annotations

@@ -12,6 +12,7 @@ import sympy as sp
 
 from painleve.errors import InputError, nearest
 from painleve.exact.balls import ball
+from painleve.exact.definite import least_minor_sign
 from painleve.exact.parse import exact_number, parse_expression
 from painleve.exact.signs import Sign, exact_sign
 from painleve.mechanics.derive import derive
@@ -231,15 +232,13 @@ def _check(state: State) -> None:
     """The state is in contact, tangential, and the scene is sound there."""
     scene, d = state.scene, derive(state.scene)
     where = f"scene {scene.name}, state {state.label or 'given'}"
-    M = state.exact(scene.inertia)
-    for size in range(1, scene.dimension + 1):
-        if exact_sign(M[:size, :size].det(method="berkowitz")).sign is not Sign.POSITIVE:
-            raise InputError(f"{where}: M is not positive definite there; choose another configuration")
+    if least_minor_sign(state.exact(scene.inertia)) is not Sign.POSITIVE:
+        raise InputError(f"{where}: M is not positive definite there; choose another configuration")
     if exact_sign(state.exact(d.gradient_squared)).sign is not Sign.POSITIVE:
         raise InputError(f"{where}: grad g vanishes there; choose another configuration")
     section = scene.contact.section
     if section.dimension:
-        if exact_sign(state.exact(d.delassus).det(method="berkowitz")).sign is not Sign.POSITIVE:
+        if least_minor_sign(state.exact(d.delassus)) is not Sign.POSITIVE:
             raise InputError(
                 f"{where}: the tangential displacements do not vary independently of g there (H3); "
                 "choose another configuration"

@@ -221,7 +221,6 @@ def _extremum(curve: StateCurve, zero: Zero) -> CriticalState | None:
 
 def _coefficient(curve: StateCurve) -> str | None:
     """The parameter that is the coefficient of friction and nothing else, if there is one."""
-    assert curve.scene.contact.section.dimension
     value = curve.scene.contact.section.expressions[0]
     elsewhere = set().union(*(x.free_symbols for x in (curve.a, *curve.b, curve.scene.contact.constraint)))
     return next((p.name for p in curve.scene.parameters if p.symbol == value and value not in elsewhere), None)

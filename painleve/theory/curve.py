@@ -34,7 +34,7 @@ class StateCurve:
         low: Number | None,
         high: Number | None,
     ) -> None:
-        if not scene.contact.section.dimension:
+        if not scene.contact.section.edges:
             raise InputError(f"scene {scene.name} has no friction: gamma is positive and mu_c infinite everywhere")
         self.scene, self.along, self.name, self.keys, self.parameters = scene, along, name, keys, parameters
         self.rules = make_curve(scene, along, name, keys=keys, parameters=parameters)

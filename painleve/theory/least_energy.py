@@ -9,17 +9,26 @@ it is in the wedge, else the best point of one of the two rays, where the tip sl
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import sympy as sp
 
 from painleve.exact.signs import Sign, Signed, exact_sign
-from painleve.mechanics.derive import Derivation, derive
-from painleve.mechanics.friction import Polygon, Segment
+from painleve.mechanics.derive import derive
+from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import State
-from painleve.theory.wedge import wedge
 
-__all__ = ["LeastEnergy", "inverse_of_two", "least_edge", "least_energy", "sticking_impulse"]
+__all__ = [
+    "LeastEnergy",
+    "contact_slip",
+    "edge_indicator",
+    "in_wedge",
+    "inverse_of_two",
+    "lowest_edge",
+    "on_ray",
+    "sticking_impulse",
+]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -31,113 +40,75 @@ class LeastEnergy:
     undecided: str = ""
 
 
-def least_edge(state: State) -> tuple[int, Signed]:
-    """The edge of the cone on which gamma is attained, and the sign of gamma, which is that of its compliance."""
-    d, friction = derive(state.scene), state.scene.contact.section
-    if isinstance(friction, Segment):
-        edges = [1, -1]
-    elif isinstance(friction, Polygon):
-        edges = _extreme_vertices(state, d, friction)
-    else:
-        return 1, _conic_sign(state, d)
+def contact_slip(state: State) -> sp.MatrixBase:
+    """H^T u-, (k x 1): numbers from here on, for of matrices of formulas a determinant may take minutes."""
+    return state.exact(state.scene.contact.tangents).T * sp.Matrix(state.u)
+
+
+def lowest_edge(state: State, edges: Iterable[int]) -> tuple[int, Signed]:
+    """Of these edges of the cone that of the least sign of its compliance."""
+    d = derive(state.scene)
     signs = {edge: exact_sign(state.exact(d.edge_compliance[edge])) for edge in edges}
     order = (Sign.NEGATIVE, Sign.UNDECIDED, Sign.ZERO, Sign.POSITIVE)
     edge = min(signs, key=lambda e: order.index(signs[e].sign))
     return edge, signs[edge]
 
 
-def _extreme_vertices(state: State, d: Derivation, friction: Polygon) -> list[int]:
-    """The vertices with the least compliance: what floats cannot tell from the least."""
-    values = [state.number(d.edge_compliance[i + 1]) for i in range(len(friction.vertices))]
-    near = 1e-9 * max(abs(state.number(d.a)), *(abs(value) for value in values))
-    return [i + 1 for i, value in enumerate(values) if value <= min(values) + near]
+def edge_indicator(scene: Scene, edge: int) -> sp.Expr:
+    """The compliance on an edge of the cone that has a direction of its own, times det(M)."""
+    d, adjugate = derive(scene), scene.inertia.adjugate()
+    along = scene.contact.tangents * d.edge_direction(edge)
+    return (d.normal.T * adjugate * (d.normal + along))[0, 0]
 
 
-def _conic_sign(state: State, d: Derivation) -> Signed:
-    """Of a - |E^T b|, by the square, which has no root in it."""
-    opposed = d.scene.contact.section.map.T * d.couplings  # type: ignore[attr-defined]
-    return exact_sign(state.exact(d.a**2 - (opposed.T * opposed)[0, 0]))
-
-
-def least_energy(state: State, edge: int, gamma: Sign) -> LeastEnergy:
-    """The jump at a state with gamma(q) <= 0 attained on that edge."""
-    d = derive(state.scene)
-    # Numbers from here on: of matrices of formulas a determinant may take minutes.
-    slip = state.exact(state.scene.contact.tangents).T * sp.Matrix(state.u)
-    if state.scene.contact.section.dimension == 1:
-        return _planar(state, d, slip[0])
-    if gamma is Sign.ZERO:
-        return _along_ray(state, d, slip, edge)
-    return _in_wedge(state, d, slip)
-
-
-def _planar(state: State, d: Derivation, slip: sp.Expr) -> LeastEnergy:
-    """The ray has s = -a/b: the jump ends where the tip sticks, if the slip is in the destabilising sense."""
-    a, b, C = (state.exact(x) for x in (d.a, d.couplings[0], d.compliance[0]))
-    drive = exact_sign(slip * b)
-    if drive.sign is Sign.UNDECIDED:
-        return LeastEnergy(undecided=f"the sense of the slip is undecided: {drive.reason}")
-    if drive.sign is not Sign.POSITIVE:
-        return LeastEnergy()
-    determinant = a * C - b**2
-    return LeastEnergy(impulse=(slip * b / determinant, -slip * a / determinant), after="sticks")
-
-
-def _along_ray(state: State, d: Derivation, slip: sp.MatrixBase, edge: int) -> LeastEnergy:
-    """gamma = 0 in space: one ray, if the section touches the line a + b.s = 0 in one point."""
-    if isinstance(state.scene.contact.section, Polygon):
-        others = [i for i in _extreme_vertices(state, d, state.scene.contact.section) if i != edge]
-        if any(exact_sign(state.exact(d.edge_compliance[i])).sign is not Sign.POSITIVE for i in others):
-            return LeastEnergy(
-                undecided="gamma = 0 on a whole edge of the friction polygon (neither H4 nor "
-                "H'4 holds): the ray of impulses is not unique, and nothing is claimed"
-            )
-    return _on_ray(state, d, slip, state.exact(d.edge_direction(edge)))
-
-
-def _on_ray(state: State, d: Derivation, slip: sp.MatrixBase, s: sp.MatrixBase) -> LeastEnergy:
+def on_ray(state: State, slip: sp.MatrixBase, s: sp.MatrixBase) -> LeastEnergy:
+    """In space: the best of the impulses lambda (1, s), a + b.s = 0."""
     drive = exact_sign(-(slip.T * s)[0, 0])
     if drive.sign is Sign.UNDECIDED:
         return LeastEnergy(undecided=f"the sense of the slip is undecided: {drive.reason}")
     if drive.sign is not Sign.POSITIVE:
         return LeastEnergy()
-    size = -(slip.T * s)[0, 0] / (s.T * _reduced(state, d) * s)[0, 0]
-    return LeastEnergy(impulse=(size, *(size * x for x in s)), after=_after(state, d, slip, size * s))
+    size = -(slip.T * s)[0, 0] / (s.T * _reduced(state) * s)[0, 0]
+    return LeastEnergy(impulse=(size, *(size * x for x in s)), after=_after(state, slip, size * s))
 
 
-def _reduced(state: State, d: Derivation) -> sp.MatrixBase:
+def _reduced(state: State) -> sp.MatrixBase:
     """Q = C - b b^T/a."""
+    d = derive(state.scene)
     b = state.exact(d.couplings)
     return state.exact(d.compliance) - b * b.T / state.exact(d.a)
 
 
-def _after(state: State, d: Derivation, slip: sp.MatrixBase, r_t: sp.MatrixBase) -> str:
+def _after(state: State, slip: sp.MatrixBase, r_t: sp.MatrixBase) -> str:
     """What the tip does after an impulse that keeps its normal velocity zero."""
-    left = slip + _reduced(state, d) * r_t
+    left = slip + _reduced(state) * r_t
     stays = all(exact_sign(x).sign is Sign.ZERO for x in left)
     return "sticks" if stays else "slips on in another direction"
 
 
-def _in_wedge(state: State, d: Derivation, slip: sp.MatrixBase) -> LeastEnergy:
-    """gamma < 0 in space."""
+def in_wedge(
+    state: State, slip: sp.MatrixBase, wedge: Callable[[], tuple[sp.MatrixBase, sp.MatrixBase] | None]
+) -> LeastEnergy:
+    """gamma < 0 in space. `wedge` gives the two directions (s_1, s_2) on the boundary of the section with a + b.s = 0,
+    s_2 counterclockwise of s_1 by less than a half turn; None where a sign is undecided."""
     if all(exact_sign(x).sign is Sign.ZERO for x in slip):
         return LeastEnergy()
-    normal, stick = sticking_impulse(state, d, slip)
-    inside = _in_cone(state, d, normal, stick)
+    impulse = sticking_impulse(state, slip)
+    inside = _in_cone(state, impulse)
     if inside is Sign.UNDECIDED:
         return LeastEnergy(undecided="whether the sticking impulse is in the friction cone is undecided")
     if inside is Sign.POSITIVE:
-        return LeastEnergy(impulse=(normal, *stick), after="sticks")
-    rays = wedge(state, d)
+        return LeastEnergy(impulse=impulse, after="sticks")
+    rays = wedge()
     if rays is None:
         return LeastEnergy(undecided="the sign of the normal compliance at a vertex of the polygon is undecided")
-    return _better(state, d, slip, [_on_ray(state, d, slip, s) for s in rays])
+    return _better(slip, [on_ray(state, slip, s) for s in rays])
 
 
-def sticking_impulse(state: State, d: Derivation, slip: sp.MatrixBase) -> tuple[sp.Expr, sp.MatrixBase]:
+def sticking_impulse(state: State, slip: sp.MatrixBase) -> tuple[sp.Expr, ...]:
     """-G^-1 (0, slip), exactly: what stops a tip in space, whether or not it is in the cone."""
-    stick = -inverse_of_two(_reduced(state, d)) * slip
-    return -(state.exact(d.couplings).T * stick)[0, 0] / state.exact(d.a), stick
+    d, stick = derive(state.scene), -inverse_of_two(_reduced(state)) * slip
+    return -(state.exact(d.couplings).T * stick)[0, 0] / state.exact(d.a), *stick
 
 
 def inverse_of_two(A: sp.MatrixBase) -> sp.MatrixBase:
@@ -145,19 +116,20 @@ def inverse_of_two(A: sp.MatrixBase) -> sp.MatrixBase:
     return sp.Matrix([[A[1, 1], -A[0, 1]], [-A[1, 0], A[0, 0]]]) / (A[0, 0] * A[1, 1] - A[0, 1] * A[1, 0])
 
 
-def _in_cone(state: State, d: Derivation, normal: sp.Expr, r_t: sp.MatrixBase) -> Sign:
+def _in_cone(state: State, impulse: tuple[sp.Expr, ...]) -> Sign:
     """POSITIVE if an impulse that is not zero is in the friction cone, NEGATIVE if not."""
+    normal, r_t = impulse[0], sp.Matrix(impulse[1:])
     lifts = exact_sign(normal).sign
     if lifts in (Sign.NEGATIVE, Sign.ZERO):
         return Sign.NEGATIVE
-    inside = d.scene.contact.section.membership(r_t / normal)
+    inside = state.scene.contact.section.membership(r_t / normal)
     sides = [exact_sign(state.exact(x)).sign for x in inside]
     if Sign.NEGATIVE in sides:
         return Sign.NEGATIVE
     return Sign.UNDECIDED if Sign.UNDECIDED in (lifts, *sides) else Sign.POSITIVE
 
 
-def _better(state: State, d: Derivation, slip: sp.MatrixBase, found: list[LeastEnergy]) -> LeastEnergy:
+def _better(slip: sp.MatrixBase, found: list[LeastEnergy]) -> LeastEnergy:
     """Of the best points of the two rays the one of less energy: 2 x the energy it takes is -slip.r_t."""
     undecided = next((f for f in found if f.undecided), None)
     if undecided is not None:

@@ -11,11 +11,11 @@ import sympy as sp
 
 from painleve import sets
 from painleve.errors import InputError
-from painleve.exact.signs import Sign, Signed, exact_sign
+from painleve.exact.signs import Sign, Signed
 from painleve.mechanics.derive import derive
 from painleve.mechanics.state import State
 from painleve.theory.coulomb.limit import CoulombLimitSet, coulomb_limit_set
-from painleve.theory.least_energy import least_edge, least_energy
+from painleve.theory.sections.listed import theory_of
 
 __all__ = ["Edge", "LimitSet", "limit_set"]
 
@@ -103,15 +103,13 @@ def limit_set(state: State, law: str = "projection") -> LimitSet | CoulombLimitS
 
 
 def _projected(state: State) -> LimitSet:
-    d, scene = derive(state.scene), state.scene
-    if not scene.contact.section.dimension:
-        return _limit(state, "point", exact_sign(state.exact(d.gamma)), 0, None, "without friction gamma is positive")
-    edge, gamma = least_edge(state)
+    theory = theory_of(state.scene.contact)
+    edge, gamma = theory.least_edge(state)
     if gamma.sign is Sign.POSITIVE:
-        return _limit(state, "point", gamma, 0, None, "gamma > 0: only r = 0 keeps the velocity tangential")
+        return _limit(state, "point", gamma, 0, None, theory.positive)
     if gamma.sign is Sign.UNDECIDED:
         return _limit(state, "undecided", gamma, edge, None, f"the sign of gamma is undecided: {gamma.reason}")
-    least = least_energy(state, edge, gamma.sign)
+    least = theory.jump(state, edge, gamma.sign)
     if least.undecided:
         return _limit(state, "undecided", gamma, edge, None, least.undecided)
     if least.impulse is None:

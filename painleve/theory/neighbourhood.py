@@ -16,11 +16,9 @@ from itertools import combinations
 import sympy as sp
 
 from painleve.exact.signs import Sign, Signed, exact_sign
-from painleve.mechanics.derive import derive
-from painleve.mechanics.friction import Polygon, Segment
 from painleve.mechanics.scene import Scene
-from painleve.mechanics.sections.section import norm
 from painleve.mechanics.state import State
+from painleve.theory.sections.listed import theory_of
 
 __all__ = ["Neighbourhood", "Neighbours", "neighbours", "smooth_indicator"]
 
@@ -70,20 +68,8 @@ def neighbours(state: State, edge: int) -> Neighbours:
 
 
 def smooth_indicator(scene: Scene, edge: int) -> sp.Expr:
-    """A smooth function with the sign of gamma near a state where it is attained on that edge of the cone.
-
-    The compliance on that edge times det(M); for a disc or an ellipse a^2 - |E^T b|^2 times det(M)^2 (E maps the unit
-    disc to the section), which has no root in it.
-    """
-    d = derive(scene)
-    friction, adjugate = scene.contact.section, scene.inertia.adjugate()
-    assert friction.dimension  # without friction gamma > 0
-    if isinstance(friction, Segment | Polygon):
-        along = scene.contact.tangents * d.edge_direction(edge)
-        return (d.normal.T * adjugate * (d.normal + along))[0, 0]
-    a = (d.normal.T * adjugate * d.normal)[0, 0]
-    E = friction.map  # type: ignore[attr-defined]
-    return a**2 - norm(E.T * scene.contact.tangents.T * adjugate * d.normal) ** 2
+    """A smooth function with the sign of gamma near a state where it is attained on that edge of the cone."""
+    return theory_of(scene.contact).indicator(scene, edge)
 
 
 def _approached(reason: str) -> Neighbours:

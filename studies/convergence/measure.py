@@ -23,7 +23,7 @@ from painleve.dynamics.schemes import SCHEME_NAMES, load_scheme
 from painleve.dynamics.simulate import simulate
 from painleve.dynamics.start import Start
 from painleve.dynamics.trajectory import Trajectory
-from painleve.kernels.motion import make_motion
+from painleve.kernels.motion.compiled import make_motion
 from painleve.mechanics.scene import Scene
 from painleve.store import provenance
 from painleve.sweep.variables import OUTCOMES, code, coded, text, velocity_unit

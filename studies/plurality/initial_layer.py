@@ -11,11 +11,13 @@ import xarray as xr
 from painleve import sets
 from painleve.core.ball_maps import uniform_ball, uniforms_needed
 from painleve.core.motion_codes import Ending, FixedStep
+from painleve.core.stepping import Method
 from painleve.core.streams import uniform_block
 from painleve.dynamics.ensemble import wilson_interval
+from painleve.dynamics.fixed_step import empty_track
 from painleve.dynamics.start import Start, as_start
 from painleve.errors import InputError
-from painleve.kernels.motion import make_motion
+from painleve.kernels.motion.compiled import make_motion
 from painleve.mechanics.state import State
 from painleve.store import provenance
 from painleve.sweep.variables import ball_unit, text, velocity_unit
@@ -75,17 +77,14 @@ def _right_velocities(start: Start, h: float, eps: float, count: int, seed: int)
     uniform_block(seed, 0, uniforms)
     uniform_ball(uniforms[:needed], dq, eps, d)
     uniform_ball(uniforms[needed:], du, eps, d)
-    q, u, r = np.zeros((n + 1, d)), np.zeros((n + 1, d)), np.zeros((n + 1, 2))
-    branch, change, several = (np.zeros(n + 1, np.int8) for _ in range(3))
+    method, track = Method(int(FixedStep.CONTACT_DYNAMICS), 0.0, 0.0), empty_track(start, n)
     t, h_all, right = h * np.arange(n + 1), np.full(n, h), np.empty((count, d))
     for i in range(count):
-        q[0], u[0] = start.q + dq[:, i], start.u + du[:, i]
-        _, ending, _ = start.motion.run(
-            int(FixedStep.CONTACT_DYNAMICS), 0.0, 0.0, 0, t, h_all, start.p, q, u, r, branch, change, several
-        )
+        track.q[0], track.u[0] = start.q + dq[:, i], start.u + du[:, i]
+        _, ending, _ = start.motion.run(method, 0, t, h_all, start.p, track)
         if Ending(ending) is not Ending.REACHED_END:
             raise InputError(f"start {start.label}: a step of {h:g} failed: {Ending(ending).sentence}")
-        right[i] = u[n]
+        right[i] = track.u[n]
     return right
 
 

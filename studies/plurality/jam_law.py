@@ -19,7 +19,7 @@ from painleve.core.jam_map import jam_fraction, limit_law
 from painleve.core.motion_codes import MemberOutcome
 from painleve.dynamics.ensemble import Ensemble, run_ensemble, wilson_interval
 from painleve.dynamics.genot_brogliato import SingularPoint, find_friction, singular_point
-from painleve.kernels.motion import make_motion
+from painleve.kernels.motion.compiled import make_motion
 from painleve.mechanics.library import load_scene
 from painleve.store import provenance
 from painleve.sweep.variables import coded

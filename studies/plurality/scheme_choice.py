@@ -11,7 +11,7 @@ import xarray as xr
 from painleve.core.motion_codes import Ending
 from painleve.dynamics.simulate import simulate
 from painleve.dynamics.trajectory import Trajectory
-from painleve.kernels.motion import make_motion
+from painleve.kernels.motion.compiled import make_motion
 from painleve.mechanics.state import State
 from painleve.store import provenance
 from painleve.sweep.variables import coded, text

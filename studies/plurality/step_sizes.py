@@ -14,7 +14,7 @@ from painleve.dynamics.ensemble import run_ensemble
 from painleve.dynamics.genot_brogliato import SingularPoint, singular_point
 from painleve.dynamics.simulate import simulate
 from painleve.errors import InputError
-from painleve.kernels.motion import make_motion
+from painleve.kernels.motion.compiled import make_motion
 from painleve.mechanics.state import State
 from painleve.store import provenance
 from painleve.sweep.variables import coded

@@ -10,7 +10,7 @@ import sympy as sp
 from painleve.exact.signs import Sign, exact_sign
 from studies.reference.facts import Fact, FactKind
 
-__all__ = ["FactStatus", "Finding", "Reproduction", "compare"]
+__all__ = ["FactStatus", "FoundValue", "Reproduction", "compare"]
 
 NUMERICAL = 1e-12  # how near a numerical second route has to come, relative
 
@@ -24,7 +24,7 @@ class FactStatus(Enum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Finding:
+class FoundValue:
     """A value found without the published one: exact, a float with a bound on its error, or a label.
 
     `route` says how; `gap` is the largest relative difference from a second, numerical route where there is one;
@@ -43,12 +43,12 @@ class Reproduction:
     """A fact, what was found, their difference as text (empty for labels) and the status."""
 
     fact: Fact
-    found: Finding
+    found: FoundValue
     difference: str
     status: FactStatus
 
 
-def compare(fact: Fact, found: Finding) -> Reproduction:
+def compare(fact: Fact, found: FoundValue) -> Reproduction:
     """Exact values must be equal, decimals round to the printed digits at both ends of their error, labels be the same.
 
     A numerical second route that is off by more than 1e-12 makes a difference too.
@@ -62,7 +62,7 @@ def compare(fact: Fact, found: Finding) -> Reproduction:
     return Reproduction(fact=fact, found=found, difference=difference, status=status)
 
 
-def _agreement(fact: Fact, found: Finding) -> tuple[bool, str]:
+def _agreement(fact: Fact, found: FoundValue) -> tuple[bool, str]:
     if fact.kind is FactKind.LABEL:
         return found.value == fact.value, ""
     if fact.kind is FactKind.DECIMAL:

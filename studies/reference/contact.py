@@ -13,7 +13,7 @@ from painleve.dynamics.simulate import simulate
 from painleve.mechanics.derive import derive
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import State, make_state
-from studies.reference.compare import Finding
+from studies.reference.compare import FoundValue
 
 __all__ = ["find_jean_condition", "find_regime", "find_stewart_start", "regime", "step_solutions", "stewart_state"]
 
@@ -66,7 +66,7 @@ def _instant(theta: float, omega: float, inertia: float, mu: float) -> tuple[np.
     return G, float(beta), float(gamma)
 
 
-def find_regime(omega: str, mu: str, *, quick: bool, seed: int) -> Finding:
+def find_regime(omega: str, mu: str, *, quick: bool, seed: int) -> FoundValue:
     """The regime of a rod at tan(theta) = 2 with slip -1, as simulated, and of random states with the same signs."""
     state = make_state(load_scene("slender_rod"), keys={"theta": "atan(2)", "omega": omega}, parameters={"mu": mu})
     simulated = _simulated_regime(state)
@@ -81,7 +81,7 @@ def find_regime(omega: str, mu: str, *, quick: bool, seed: int) -> Finding:
             labels.add(regime(G[0, 0] + friction * G[0, 1], acceleration))
             alike += 1
     route = f"`simulate --scheme event_driven`; and all F tried at {alike} random states of these signs"
-    return Finding(value=_agreed(simulated, labels), route=route)
+    return FoundValue(value=_agreed(simulated, labels), route=route)
 
 
 def _simulated_regime(state: State) -> str:
@@ -98,7 +98,7 @@ def _agreed(simulated: str, labels: set[str]) -> str:
     return f"{simulated} simulated, {' or '.join(sorted(labels)) or 'nothing'} enumerated"
 
 
-def find_jean_condition(*, quick: bool, seed: int) -> Finding:
+def find_jean_condition(*, quick: bool, seed: int) -> FoundValue:
     """Whether -1 < mu G_nt/G_nn < 1, gamma > 0, and one solution for every velocity tried, hold at the same rods."""
     rng, count = np.random.default_rng(seed), QUICK_STATES if quick else STATES
     exceptions, unique = 0, 0
@@ -114,7 +114,7 @@ def find_jean_condition(*, quick: bool, seed: int) -> Finding:
         f"every mode tried for {VELOCITIES + 2} velocities at {count} random rods: one solution at {unique}, "
         f"and these are the rods with gamma > 0; exceptions: {exceptions}"
     )
-    return Finding(value="iff gamma > 0" if exceptions == 0 else f"{exceptions} exceptions", route=route)
+    return FoundValue(value="iff gamma > 0" if exceptions == 0 else f"{exceptions} exceptions", route=route)
 
 
 def _velocities(G: np.ndarray, mu: float, rng: np.random.Generator) -> np.ndarray:
@@ -129,7 +129,7 @@ def stewart_state(angle: str, slip: str) -> State:
     return make_state(load_scene("slender_rod"), keys={"theta": angle, "slip": slip}, parameters=values)
 
 
-def find_stewart_start(angle: str, slip: str) -> Finding:
+def find_stewart_start(angle: str, slip: str) -> FoundValue:
     """The regime at the start, simulated and by trying all F."""
     state = stewart_state(angle, slip)
     theta = state.number(state.q[2])
@@ -138,4 +138,4 @@ def find_stewart_start(angle: str, slip: str) -> Finding:
     friction = -float(np.sign(float(slip))) * 1000.0
     labels = {regime(G[0, 0] + friction * G[0, 1], beta)}
     route = "`simulate --scheme event_driven`; and all F tried, with G inverted by NumPy"
-    return Finding(value=_agreed(_simulated_regime(state), labels), route=route)
+    return FoundValue(value=_agreed(_simulated_regime(state), labels), route=route)

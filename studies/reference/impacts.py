@@ -16,7 +16,7 @@ from painleve.dynamics.start import Start, make_start
 from painleve.dynamics.trajectory import Trajectory
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
-from studies.reference.compare import Finding
+from studies.reference.compare import FoundValue
 from studies.reference.contact import stewart_state
 
 __all__ = ["find_impact_ends_in_stick", "find_impact_must_follow", "find_stewart_rest"]
@@ -27,7 +27,7 @@ SLIP_SPEEDS = (1e-4, 1e-6)  # m/s
 REMAINS = 0.01  # of the slip: less than this is left when an impact without collision is over, all of it after lift-off
 
 
-def find_impact_ends_in_stick(*, quick: bool) -> Finding:
+def find_impact_ends_in_stick(*, quick: bool) -> FoundValue:
     """The tip's tangential velocity when compliant contact opens after an impact without collision."""
     state = make_state(load_scene("slender_rod"), "paradox")
     words, largest = [], 0.0
@@ -48,7 +48,7 @@ def find_impact_ends_in_stick(*, quick: bool) -> Finding:
         f"compliant contact from slip -1 at tan(theta) = 2, mu = 2 (stiffness, speed over which friction is "
         f"regularised): |v_t| = {', '.join(words)}; at most {largest:.2f} of that speed"
     )
-    return Finding(value="zero" if largest < 1.0 else "not zero", route=route)
+    return FoundValue(value="zero" if largest < 1.0 else "not zero", route=route)
 
 
 def _velocity_at_opening(run: Trajectory) -> float:
@@ -59,7 +59,7 @@ def _velocity_at_opening(run: Trajectory) -> float:
     return points[opened[0] - 1].v_t if opened else math.inf
 
 
-def find_impact_must_follow(*, quick: bool) -> Finding:
+def find_impact_must_follow(*, quick: bool) -> FoundValue:
     """What compliant contact makes of Glocker's rod as it slips into the point, where r = 2/3 and F is infinite."""
     start, words, follows = _before_the_point(), [], True
     for stiffness in QUICK_STIFFNESSES if quick else STIFFNESSES:
@@ -72,7 +72,7 @@ def find_impact_must_follow(*, quick: bool) -> Finding:
         when = f"open again at t = {BEFORE + run.t[opened[0]]:.4f} s" if len(opened) else "never open again"
         words.append(f"{when} with {left:.2%} of the slip at {stiffness:g} N/m")
     route = f"compliant contact from t = {BEFORE:g} s on the smooth slip: {'; '.join(words)}"
-    return Finding(value="impact without collision" if follows else "another end", route=route)
+    return FoundValue(value="impact without collision" if follows else "another end", route=route)
 
 
 @lru_cache(maxsize=1)
@@ -89,7 +89,7 @@ def _before_the_point() -> Start:
     )
 
 
-def find_stewart_rest() -> Finding:
+def find_stewart_rest() -> FoundValue:
     """What one contact can show of Stewart's rod in time stepping: the jam, and the fall until it is flat."""
     run = simulate(stewart_state("3*pi/4", "1"), step=0.01, until=1.0, monitor=False)
     jams = [jump.index for jump in run.jumps if jump.kind is Change.JUMP_WITHOUT_COLLISION]
@@ -99,4 +99,4 @@ def find_stewart_rest() -> Finding:
     value = ", ".join((["jams"] if jams else []) + (["falls flat"] if len(flat) else []))
     obstacle = "both ends of the published rod meet the floor; a scene here has one contact, and the other end falls on"
     route = f"the paper's scheme: the rod {' and '.join(words)}"
-    return Finding(value=value, route=route, obstacle=obstacle)
+    return FoundValue(value=value, route=route, obstacle=obstacle)

@@ -17,7 +17,7 @@ from painleve.mechanics.derive import derive
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 from painleve.theory.classification import classify
-from studies.reference.compare import Finding
+from studies.reference.compare import FoundValue
 from studies.reference.slip import derive_slip
 
 __all__ = [
@@ -60,17 +60,17 @@ def _critical_friction(values: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
     return mu_c.xreplace(values)
 
 
-def find_mu_P(slope: bool) -> Finding:
+def find_mu_P(slope: bool) -> FoundValue:
     """The least mu_c over the angle for symbolic alpha, or the tan(theta) where it is taken."""
     t = _stationary(critical_friction(), T)
     value = sp.simplify(critical_friction().xreplace({T: t}))
     chosen, place = (t, 0) if slope else (value, 1)
     gap = max(_gap(chosen.xreplace({ALPHA: a}), _numerical_least(a)[place]) for a in ALPHAS)
     route = "d mu_c/dt = 0 solved for symbolic alpha; the least mu_c in 40 digits at five alpha"
-    return Finding(value=chosen, route=route, gap=gap)
+    return FoundValue(value=chosen, route=route, gap=gap)
 
 
-def find_least_friction(slope: bool) -> Finding:
+def find_least_friction(slope: bool) -> FoundValue:
     """The same for the uniform rod, and the branch there by exact arithmetic."""
     t = _stationary(critical_friction().xreplace({ALPHA: sp.Integer(3)}), T)
     value = critical_friction().xreplace({ALPHA: sp.Integer(3), T: t})
@@ -80,10 +80,10 @@ def find_least_friction(slope: bool) -> Finding:
     chosen, place = (t, 0) if slope else (value, 1)
     gap = _gap(chosen, _numerical_least(sp.Integer(3))[place]) if decided else math.inf
     route = f"d mu_c/dt = 0 solved, and in 40 digits; gamma there at mu - 1e-9, mu, mu + 1e-9 is {found} by `classify`"
-    return Finding(value=chosen, route=route, gap=gap)
+    return FoundValue(value=chosen, route=route, gap=gap)
 
 
-def find_band_edge(upper: bool) -> Finding:
+def find_band_edge(upper: bool) -> FoundValue:
     """tan(theta) where Newton's equations have no finite contact force, for symbolic mu."""
     edge = sp.numer(on_tangent(derive_slip().edge.xreplace({ALPHA: sp.Integer(3)})))
     roots = sorted(sp.roots(edge, T), key=lambda root: float(root.xreplace({MU: sp.Integer(2)})))
@@ -91,28 +91,28 @@ def find_band_edge(upper: bool) -> Finding:
     signs = [_sign_of_gamma(mu=mu, t=chosen.xreplace({MU: mu})) for mu in FRICTIONS]
     found = ", ".join(sign.value for sign in signs)
     route = f"the slip's compliance = 0 solved; gamma there at four mu by `classify`: {found}"
-    return Finding(value=chosen, route=route, gap=0.0 if set(signs) == {Sign.ZERO} else math.inf)
+    return FoundValue(value=chosen, route=route, gap=0.0 if set(signs) == {Sign.ZERO} else math.inf)
 
 
-def find_sixty_degrees_friction() -> Finding:
+def find_sixty_degrees_friction() -> FoundValue:
     """mu_c at 60 degrees."""
     value = critical_friction().xreplace({ALPHA: sp.Integer(3), T: sp.sqrt(3)})
-    return Finding(value=float(value), error=1e-15, route=f"mu_c of the scene's derivation: {value}")
+    return FoundValue(value=float(value), error=1e-15, route=f"mu_c of the scene's derivation: {value}")
 
 
-def find_force_at_rest() -> Finding:
+def find_force_at_rest() -> FoundValue:
     """F/(m gravity) of the uniform rod's slip at omega = 0."""
     slip = derive_slip()
     force = (slip.push / slip.edge).xreplace({OMEGA: sp.Integer(0), ALPHA: sp.Integer(3)})
     route = "Newton's equations solved for the accelerations and the contact force"
-    return Finding(value=force / (M * GRAVITY), route=route)
+    return FoundValue(value=force / (M * GRAVITY), route=route)
 
 
-def find_singular_rate() -> Finding:
+def find_singular_rate() -> FoundValue:
     """omega^2 where the free normal acceleration vanishes."""
     square = sp.Symbol("square", positive=True)
     (root,) = sp.solve(derive_slip().push.subs(OMEGA, sp.sqrt(square)), square)
-    return Finding(value=root, route="Newton's equations solved; the numerator of the contact force = 0")
+    return FoundValue(value=root, route="Newton's equations solved; the numerator of the contact force = 0")
 
 
 @lru_cache(maxsize=1)
@@ -124,20 +124,20 @@ def eigenvalue_ratio() -> sp.Expr:
     return sp.factor(at_point[1, 1] / at_point[0, 0])
 
 
-def find_eigenvalue_ratio() -> Finding:
+def find_eigenvalue_ratio() -> FoundValue:
     """The ratio r, again with the Jacobian and its eigenvalues in 40 digits."""
     points = [(a, t) for a in ALPHAS for t in (sp.Rational(1, 2), sp.Rational(9, 10))]
     gap = max(_gap(eigenvalue_ratio().xreplace({ALPHA: a, T: t}), _numerical_ratio(a, t)) for a, t in points)
     route = "eigenvalues of the slip's Jacobian in the time dt/p; the same in 40 digits by differences at ten points"
-    return Finding(value=eigenvalue_ratio(), route=route, gap=gap)
+    return FoundValue(value=eigenvalue_ratio(), route=route, gap=gap)
 
 
-def find_mu_C(uniform: bool) -> Finding:
+def find_mu_C(uniform: bool) -> FoundValue:
     """The friction on the lower edge at which r = 1."""
     (t,) = sp.solve(eigenvalue_ratio() - 1, T)
     (mu,) = sp.solve(on_tangent(derive_slip().edge).xreplace({T: t}), MU)
     value = mu.xreplace({ALPHA: sp.Integer(3)}) if uniform else sp.simplify(mu)
-    return Finding(value=value, route="r = 1 solved for tan(theta), and the edge of the band there for mu")
+    return FoundValue(value=value, route="r = 1 solved for tan(theta), and the edge of the band there for mu")
 
 
 def on_tangent(expression: sp.Expr) -> sp.Expr:

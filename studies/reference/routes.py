@@ -7,13 +7,13 @@ from types import MappingProxyType
 
 from painleve.errors import InputError
 from studies.reference import contact, impacts, rod, slips
-from studies.reference.compare import Finding, Reproduction, compare
+from studies.reference.compare import FoundValue, Reproduction, compare
 from studies.reference.facts import Fact
 
 __all__ = ["ROUTES", "reproduce"]
 
 # quick: fewer random states, slips and stiffnesses; seed: of the random states
-ROUTES: Mapping[str, Callable[[bool, int], Finding]] = MappingProxyType(
+ROUTES: Mapping[str, Callable[[bool, int], FoundValue]] = MappingProxyType(
     {
         "least_friction": lambda quick, seed: rod.find_least_friction(slope=False),
         "least_friction_slope": lambda quick, seed: rod.find_least_friction(slope=True),

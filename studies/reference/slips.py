@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 import sympy as sp
 
-from studies.reference.compare import Finding
+from studies.reference.compare import FoundValue
 from studies.reference.rod import ALPHA, MU, T, eigenvalue_ratio, on_tangent
 from studies.reference.slip import Arc, ArcEnd, SlipFlow, derive_slip, make_flow
 
@@ -49,7 +49,7 @@ def fan(mu: float, shares: int, *, above: bool = False) -> tuple[Arc, ...]:
     )
 
 
-def find_bounded_force(*, quick: bool) -> Finding:
+def find_bounded_force(*, quick: bool) -> FoundValue:
     """Whether slips below mu_C lift off with a finite force before the edge."""
     arcs = [arc for mu in BELOW for arc in fan(mu, _shares(quick))]
     lifted = sum(arc.end is ArcEnd.LIFT_OFF for arc in arcs)
@@ -58,10 +58,10 @@ def find_bounded_force(*, quick: bool) -> Finding:
         f"{len(arcs)} slips at mu = {_listed(BELOW)}: {lifted} lift off before the edge, the nearest at "
         f"{nearest:.1g} rad; no force exceeds {growth:.3f} times that at its start"
     )
-    return Finding(value="bounded" if lifted == len(arcs) else "not bounded", route=route)
+    return FoundValue(value="bounded" if lifted == len(arcs) else "not bounded", route=route)
 
 
-def find_infinite_force(*, quick: bool) -> Finding:
+def find_infinite_force(*, quick: bool) -> FoundValue:
     """Whether F on slips into the point is A x^(r - 1) + B near it, A > 0, r < 1, with x the distance to the edge."""
     grows, words = True, []
     for mu in ABOVE:
@@ -74,10 +74,10 @@ def find_infinite_force(*, quick: bool) -> Finding:
             f"mu = {mu:.4g}: {len(arrived)} come within {NEAREST:g} rad, there F is up to {largest:.0e} "
             f"m gravity and A x^{ratio - 1.0:.3f} + B to {misfit:.0e}"
         )
-    return Finding(value="infinite" if grows else "not so", route="; ".join(words))
+    return FoundValue(value="infinite" if grows else "not so", route="; ".join(words))
 
 
-def find_inconsistent_not_reached(*, quick: bool) -> Finding:
+def find_inconsistent_not_reached(*, quick: bool) -> FoundValue:
     """Whether each slip lifts off, turns back, or has the free normal acceleration vanish as it comes to the edge."""
     mus = (*BELOW, *ABOVE)
     arcs = [arc for mu in mus for above in (False, True) for arc in fan(mu, _shares(quick), above=above)]
@@ -92,7 +92,7 @@ def find_inconsistent_not_reached(*, quick: bool) -> Finding:
         f"back, {vanishing} end in the 0/0 point (|beta| <= {largest:.0e} gravity at {NEAREST:g} rad, falling "
         f"like x^r), {others} elsewhere"
     )
-    return Finding(value="not reached" if others == 0 else "reached", route=route)
+    return FoundValue(value="not reached" if others == 0 else "reached", route=route)
 
 
 def _shares(quick: bool) -> int:
@@ -125,7 +125,7 @@ def _fit(arc: Arc, ratio: float) -> tuple[float, float]:
     return float(coefficients[0]), float(np.abs(terms @ coefficients - 1.0).max())
 
 
-def find_stoss_angle() -> Finding:
+def find_stoss_angle() -> FoundValue:
     """Where the smooth slip of Glocker's rod ends: the edge of its band, exactly, and where the slip arrives."""
     values = {ALPHA: sp.Integer(3), MU: sp.Rational(5, 3)}
     slopes = sp.solve(on_tangent(derive_slip().edge.xreplace(values)), T)
@@ -133,15 +133,15 @@ def find_stoss_angle() -> Finding:
     arrives = arc.end is ArcEnd.EDGE
     gap = abs(flow.edges[0] - float(exact)) / float(exact) if arrives else math.inf
     route = f"the edge of the band solved, and bracketed; the slip comes within {arc.distance[-1]:.0e} rad of it"
-    return Finding(value=exact, route=route, gap=gap)
+    return FoundValue(value=exact, route=route, gap=gap)
 
 
-def find_stoss_time() -> Finding:
+def find_stoss_time() -> FoundValue:
     """When: the slip integrated in the time dt/p, and the last stretch at its constant rate."""
     _, arc = _stoss()
     value = float(arc.t[-1] + arc.distance[-1] / arc.omega[-1])
     route = f"Newton's equations in the time dt/p by DOP853, relative tolerance 1e-13: {value:.12f}"
-    return Finding(value=value, error=1e-11, route=route)
+    return FoundValue(value=value, error=1e-11, route=route)
 
 
 @lru_cache(maxsize=1)

@@ -113,9 +113,9 @@ class BoxSearch:
                 lo.append([x for x, _ in cell])
                 hi.append([y for _, y in cell])
                 face.append(number)
-        n = len(face)
-        corner = np.array(lo, dtype=float).reshape(n, -1), np.array(hi, dtype=float).reshape(n, -1)
-        return _Boxes(*corner, np.array(face), np.full(n, np.inf), np.zeros(n, dtype=int))
+        n, width = len(face), len(axes) + len(self.faces[0][1])
+        corner = np.array(lo, dtype=float).reshape(n, width), np.array(hi, dtype=float).reshape(n, width)
+        return _Boxes(*corner, np.array(face, dtype=int), np.full(n, np.inf), np.zeros(n, dtype=int))
 
     def _admissible(self) -> Array:
         """For one xi: cuts of the least interval outside which g < 0, or p < 0, for sure."""

@@ -25,6 +25,7 @@ from painleve.asymptotics.certify.preimage import candidate_member
 from painleve.asymptotics.local import BITS, LocalProblem
 from painleve.asymptotics.member import Member, base_balls, make_member
 from painleve.asymptotics.witness import find_witness
+from painleve.errors import InputError
 from painleve.exact.jets import Jet, jets
 from painleve.sets import excess_of_segment_from_profile
 from painleve.theory.neighbourhood import smooth_indicator
@@ -53,7 +54,10 @@ def slips_nowhere(problem: LocalProblem, eps: float) -> bool:
 
     The state is critical and isolated: grad p = -kappa grad g holds exactly.
     """
-    forms = _Forms(problem, eps)
+    try:
+        forms = _Forms(problem, eps)
+    except InputError:  # P or g has no expansion on the ball
+        return False
     return all(forms.excludes(direction) for direction in _sectors(len(problem.shape)))
 
 

@@ -30,6 +30,7 @@ from painleve.asymptotics.witness import find_family
 from painleve.core.codes import ContactMode
 from painleve.errors import InputError
 from painleve.sets import Bounds
+from painleve.theory.domain import check_domain
 from painleve.theory.limit_set import LimitSet
 from painleve.theory.neighbourhood import Neighbourhood, Neighbours, neighbours
 
@@ -71,7 +72,8 @@ def certify_distance(limit: LimitSet, eps: float, options: CertifyOptions | None
     """Enclosures of both excesses; the relative widths that were reached are in the ending.
 
     Raises InputError for eps <= 0, a state whose limit set is undecided, friction in space, scenes with more than two
-    shape coordinates, and where the ball is so large that expansions about its centre do not converge.
+    shape coordinates, and where the ball is so large that the law is not proved to be defined on it
+    (painleve.theory.domain) or expansions about its centre do not converge.
     """
     options, eps = options or CertifyOptions(), check_eps(eps)
     if limit.kind == "undecided":
@@ -81,6 +83,7 @@ def certify_distance(limit: LimitSet, eps: float, options: CertifyOptions | None
             f"certify: scene {limit.state.scene.name} has friction in space, which this method does not "
             "search; use the methods sample or optimise"
         )
+    check_domain(limit.state, eps)
     problem = make_local_problem(limit)
     near = neighbours(limit.state, limit.edge) if limit.critical else None
     apart = near is not None and near.kind is Neighbourhood.ISOLATED and slips_nowhere(problem, eps)

@@ -135,11 +135,18 @@ def expand(problem: LocalProblem, eps: float, expressions: Sequence[sp.Expr], or
     with flint.ctx.workprec(BITS):
         radius = flint.arb(float(eps))
         wide_point = point | {x: point[x] + flint.arb(0, float(eps)) for x in variables}
+        near = jets(expressions, variables, point, order, bits=BITS)
+        if not all(jet.is_finite() for jet in near):
+            raise InputError("certify: the scene is not analytic at this state, so nothing can be expanded; use sample")
         try:
-            near = jets(expressions, variables, point, order, bits=BITS)
             wide = jets(expressions, variables, wide_point, order + 1, bits=BITS)
-        except ValueError as error:
+        except InputError as error:
             raise InputError(f"certify: eps = {eps:g} is too large at this state ({error}); use sample") from None
+        if not all(jet.is_finite() for jet in wide):
+            raise InputError(
+                f"certify: eps = {eps:g} is too large at this state: the scene is not shown to be analytic on the "
+                "ball; use sample"
+            )
         pairs = zip(near, wide, strict=True)
         return [TaylorModel(near=x, remainder=_lagrange(y, radius), radius=radius) for x, y in pairs]
 

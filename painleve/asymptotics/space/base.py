@@ -16,8 +16,9 @@ from painleve.exact.signs import Sign, exact_sign
 from painleve.mechanics.derive import Derivation, derive
 from painleve.mechanics.friction import Polygon
 from painleve.mechanics.state import State
-from painleve.theory.least_energy import inverse_of_two, sticking_impulse
+from painleve.theory.least_energy import contact_slip, inverse_of_two
 from painleve.theory.limit_set import LimitSet
+from painleve.theory.sections.listed import theory_of
 
 __all__ = ["space_base"]
 
@@ -35,10 +36,10 @@ def space_base(limit: LimitSet, bits: int) -> SpaceBase | PolygonBase:
     E, inverse = _map(state, d)
     number = partial(_number, state, bits)
     # Numbers first: of matrices of formulas a determinant may take minutes.
-    slip, couplings, compliance = _slip(state), state.exact(d.couplings), state.exact(d.compliance)
+    slip, couplings, compliance = contact_slip(state), state.exact(d.couplings), state.exact(d.compliance)
     b, turned = E.T * couplings, E.T * slip
-    stick_n, stick = sticking_impulse(state, d, slip)
-    stick, jump = inverse * stick, inverse * sp.Matrix(limit.tangential)
+    stick_n, *stick = theory_of(state.scene.contact).sticking_impulse(state)
+    stick, jump = inverse * sp.Matrix(stick), inverse * sp.Matrix(limit.tangential)
     after = turned + E.T * (couplings * limit.multiplier + compliance * sp.Matrix(limit.tangential))
     size = limit.multiplier if limit.kind != "point" else sp.Integer(1)
     return SpaceBase(
@@ -57,10 +58,6 @@ def space_base(limit: LimitSet, bits: int) -> SpaceBase | PolygonBase:
     )
 
 
-def _slip(state: State) -> sp.MatrixBase:
-    return state.exact(state.scene.contact.tangents).T * sp.Matrix(state.u)
-
-
 def _map(state: State, d: Derivation) -> tuple[sp.MatrixBase, sp.MatrixBase]:
     """E of the section E times the unit disc, and its inverse."""
     E = state.exact(d.scene.contact.section.map)  # type: ignore[attr-defined]
@@ -75,8 +72,8 @@ def _map(state: State, d: Derivation) -> tuple[sp.MatrixBase, sp.MatrixBase]:
 def _polygon_base(limit: LimitSet, bits: int) -> PolygonBase:
     state, d = limit.state, derive(limit.state.scene)
     number = partial(_number, state, bits)
-    slip, jump = _slip(state), sp.Matrix(limit.tangential)
-    stick_n, stick = sticking_impulse(state, d, slip)
+    slip, jump = contact_slip(state), sp.Matrix(limit.tangential)
+    stick_n, *stick = theory_of(state.scene.contact).sticking_impulse(state)
     after = slip + state.exact(d.couplings) * limit.multiplier + state.exact(d.compliance) * jump
     first, second, x_first, x_second = _edge_of_jump(limit, number)
     return PolygonBase(

@@ -19,7 +19,7 @@ import flint
 
 from painleve.core.codes import ContactMode
 
-__all__ = ["Contact", "conic_impulse", "polygon_impulse"]
+__all__ = ["ContactBalls", "conic_impulse", "polygon_impulse"]
 
 WIDENINGS = (4, 2**10, 2**30)  # of the first Newton correction, to a ball that holds the root
 Balls = Sequence[flint.arb]
@@ -27,7 +27,7 @@ Impulse = tuple[flint.arb, flint.arb, flint.arb, ContactMode]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Contact:
+class ContactBalls:
     """The Delassus matrix [[a, b], [b, C]] and the contact velocity (v_n, v_t) with v_n < 0: balls.
 
     b: (b_1, b_2), C: (C_11, C_12, C_22), v: (v_n, v_1, v_2).
@@ -60,12 +60,12 @@ class Contact:
         (Q_11, Q_12, Q_22), (w_1, w_2) = self.energy
         return Q_11 * r_1 + Q_12 * r_2 + w_1, Q_12 * r_1 + Q_22 * r_2 + w_2
 
-    def turned(self, e_1: flint.arb, e_2: flint.arb) -> Contact:
+    def turned(self, e_1: flint.arb, e_2: flint.arb) -> ContactBalls:
         """The same in tangential axes of which (e_1, e_2) is the first."""
         (b_1, b_2), (C_11, C_12, C_22), (v_n, v_1, v_2) = self.b, self.C, self.v
         x_1, x_2 = C_11 * e_1 + C_12 * e_2, C_12 * e_1 + C_22 * e_2
         y_1, y_2 = C_12 * e_1 - C_11 * e_2, C_22 * e_1 - C_12 * e_2
-        return Contact(
+        return ContactBalls(
             a=self.a,
             b=(b_1 * e_1 + b_2 * e_2, b_2 * e_1 - b_1 * e_2),
             C=(x_1 * e_1 + x_2 * e_2, x_2 * e_1 - x_1 * e_2, y_2 * e_1 - y_1 * e_2),
@@ -73,7 +73,7 @@ class Contact:
         )
 
 
-def conic_impulse(contact: Contact, p: flint.arb) -> Impulse:
+def conic_impulse(contact: ContactBalls, p: flint.arb) -> Impulse:
     """(r_n, r_1, r_2, branch) with the unit disc for a section; p = a - |b|, exactly zero where it is known to be.
 
     Raises ArithmeticError where the balls do not decide between sticking and slip, or do not isolate the optimum.
@@ -99,7 +99,7 @@ def _norm(x: flint.arb, y: flint.arb) -> flint.arb:
     return (x * x + y * y).nonnegative_part().sqrt()
 
 
-def _slip(contact: Contact, size: flint.arb, p: flint.arb) -> tuple[flint.arb, flint.arb, flint.arb]:
+def _slip(contact: ContactBalls, size: flint.arb, p: flint.arb) -> tuple[flint.arb, flint.arb, flint.arb]:
     """(r_n, x, y) of the optimum on the boundary, in the frame of b; |b| = size."""
     for cotangent in (False, True):
         for t, quartic in _stationary(contact, size, p, cotangent):
@@ -132,7 +132,7 @@ def _point(t: Number, cotangent: bool, size: flint.arb, a: flint.arb, p: flint.a
 
 
 def _stationary(
-    contact: Contact, size: flint.arb, p: flint.arb, cotangent: bool
+    contact: ContactBalls, size: flint.arb, p: flint.arb, cotangent: bool
 ) -> Iterator[tuple[flint.arb, flint.arb_poly]]:
     """Approximate roots in [-1, 1] of the quartic that vanishes where the tip's velocity is normal to the conic."""
     t = flint.arb_poly([0, 1])
@@ -167,7 +167,7 @@ def _enclosed(quartic: flint.arb_poly, t: flint.arb) -> flint.arb | None:
     return None
 
 
-def polygon_impulse(contact: Contact, vertices: Sequence[Balls], p: Balls) -> Impulse:
+def polygon_impulse(contact: ContactBalls, vertices: Sequence[Balls], p: Balls) -> Impulse:
     """(r_n, r_1, r_2, branch) with a polygon for a section; p: a + b.s of its vertices, zero where it is known to be.
 
     Raises ArithmeticError where the balls decide nothing.
@@ -186,7 +186,7 @@ def polygon_impulse(contact: Contact, vertices: Sequence[Balls], p: Balls) -> Im
 
 
 def _depth(
-    contact: Contact, vertices: Sequence[Balls], p: Balls, i: int, j: int, r_1: flint.arb, r_2: flint.arb
+    contact: ContactBalls, vertices: Sequence[Balls], p: Balls, i: int, j: int, r_1: flint.arb, r_2: flint.arb
 ) -> flint.arb:
     """The determinant of (p_i, s_i), (p_j, s_j), (nu, r): positive inside the edge from s_i to s_j."""
     (s_1, s_2), (z_1, z_2) = vertices[i], vertices[j]
@@ -194,7 +194,7 @@ def _depth(
 
 
 def _on_vertex(
-    contact: Contact, vertices: Sequence[Balls], p: Balls, i: int
+    contact: ContactBalls, vertices: Sequence[Balls], p: Balls, i: int
 ) -> tuple[flint.arb, flint.arb, flint.arb] | None:
     """The impulse on vertex i, if it is the optimum."""
     if not p[i] > 0:
@@ -210,7 +210,7 @@ def _on_vertex(
 
 
 def _on_edge(
-    contact: Contact, vertices: Sequence[Balls], p: Balls, k: int
+    contact: ContactBalls, vertices: Sequence[Balls], p: Balls, k: int
 ) -> tuple[flint.arb, flint.arb, flint.arb] | None:
     """The least point of the edge from vertex k to the next, if it is between them."""
     i, j = k, (k + 1) % len(vertices)

@@ -61,6 +61,8 @@ def root_rate(limit: LimitSet, isolated: bool) -> Root:
         raise InputError(
             f"{where} has {len(problem.shape)} coordinates on which the law depends; at most 2 are searched"
         )
+    if not problem.analytic:
+        raise InputError(f"{where} is not analytic at this state: it has no derivatives")
     search = _RootSearch(problem, isolated)
     squared, x, nu = search.best()
     dq = np.zeros(problem.dimension)

@@ -1,8 +1,4 @@
-"""The scheme of Anitescu and Potra: complementarity of normal velocity and impulse where there is contact.
-
-u_{i+1} = u_i + h M^-1(q_i) f(t_i, q_i, u_i) + M^-1 W r;  where g(q_i) >= 0: 0 <= r_n, w_n . u_{i+1} >= 0, one 0
-q_{i+1} = q_i + h u_{i+1}
-"""
+"""The scheme of Anitescu and Potra (step: painleve.kernels.motion.schemes.anitescu_potra)."""
 
 from painleve.core.motion_codes import FixedStep
 from painleve.dynamics.scheme import Stepped

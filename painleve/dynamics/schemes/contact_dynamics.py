@@ -1,7 +1,4 @@
-"""The Contact Dynamics scheme of the paper's section 2, to the letter (docs/theory.md, section 7).
-
-q_{i+1} = q_i + h u_i,  v = u_i + h M^-1(q_{i+1}) f(t_{i+1}, q_{i+1}, u_i),  u_{i+1} = S(q_{i+1}, v)
-"""
+"""The Contact Dynamics scheme of the paper's section 2 (step: painleve.kernels.motion.schemes.contact_dynamics)."""
 
 from painleve.core.motion_codes import FixedStep
 from painleve.dynamics.scheme import Stepped

@@ -1,10 +1,4 @@
-"""The position-level scheme of Schatzman and Paoli, impacts without rebound, with Coulomb's friction.
-
-    q_{i+1} = 2 q_i - q_{i-1} + h^2 M^-1 f(t_i, q_i, u_i) + h M^-1(q_{i+1}) W(q_{i+1}) r,  u_{i+1} = (q_{i+1} - q_i)/h
-    0 <= r_n, g(q_{i+1}) <= 0, one of them 0
-
-Published without friction; friction opposes the slip W^T u_{i+1}. The constraint is met by Newton's iteration on g.
-"""
+"""The position-level scheme of Schatzman and Paoli (step: painleve.kernels.motion.schemes.schatzman_paoli)."""
 
 from painleve.core.motion_codes import FixedStep
 from painleve.dynamics.scheme import Stepped

@@ -2,7 +2,7 @@
 
 The coordinates are x and the height w above the wall, so that g = -w and y = w + kappa x^2/2. On the wall the bead
 obeys (1 + kappa^2 x^2) x'' + kappa^2 x x'^2 + gravity kappa x = 0, and presses on it while
-m (gravity + kappa x'^2) > 0; over a hill, kappa < 0, a fast bead leaves it.
+m (gravity + kappa x'^2) > 0; over a hill, kappa < 0, a fast bead leaves it. (docs/theory.md, section 6.2.)
 """
 
 import sympy as sp

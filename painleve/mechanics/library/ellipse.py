@@ -3,7 +3,7 @@
 The height of the lowest point below the centre is the support function h(theta) = sqrt(A^2 sin^2 + B^2 cos^2), and that
 point is (-h', -h) from the centre. H is the velocity of the material point that is there, u_x + h u_theta: it is no
 gradient of the moving point's position. mu_c = (I/m + h'^2)/|h h'|: infinite for a disc (A = B), a rod's for B = 0, and
-with the mass near the centre it has a maximum between two minima.
+with the mass near the centre it has a maximum between two minima. (docs/theory.md, section 6.2.)
 """
 
 import sympy as sp

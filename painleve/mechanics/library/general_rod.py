@@ -1,6 +1,7 @@
 """A rod of any mass distribution that is symmetric about its centre: alpha = m l^2/I says all that friction asks.
 
 The least critical friction is mu_P(alpha) = 2 sqrt(1 + alpha)/alpha, at tan(theta) = sqrt(1 + alpha).
+(docs/theory.md, section 6.1.)
 """
 
 import sympy as sp

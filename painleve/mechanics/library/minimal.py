@@ -2,6 +2,7 @@
 
 M^-1 = [[A, beta], [beta, N]] and g = -y, so gamma = N - mu |beta|; beta is a polynomial of second degree, positive
 definiteness asks for A N > beta^2. With N = mu = beta_0 = 1 and no other term of first order, (0, 0) is critical.
+(docs/theory.md, section 6.2.)
 """
 
 import sympy as sp

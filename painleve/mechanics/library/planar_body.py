@@ -2,6 +2,7 @@
 
 With X and Y the contact point's offset from the centre of mass, mu_c = (I/m + X^2)/|X Y|: a rod whose alpha is
 m (xi^2 + eta^2)/I. A uniform rectangle on its corner has alpha = 3, whatever its sides: it is a slender rod.
+(docs/theory.md, section 6.1.)
 """
 
 import sympy as sp

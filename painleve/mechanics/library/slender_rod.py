@@ -1,4 +1,4 @@
-"""The slender rod of the Painlevé paradox: its lower tip slides on a horizontal floor."""
+"""The slender rod of the Painlevé paradox: its lower tip slides on a horizontal floor (docs/theory.md, section 6.1)."""
 
 import sympy as sp
 

@@ -1,4 +1,7 @@
-"""The slender rod in space: its lower tip slides on a horizontal floor with isotropic friction."""
+"""The slender rod in space: its lower tip slides on a horizontal floor with isotropic friction.
+
+Source: docs/theory.md, section 6.2.
+"""
 
 import sympy as sp
 

@@ -3,6 +3,7 @@
 Along the table the critical friction has interior maxima and minima. At such a point with mu equal to it, gamma = 0
 and grad gamma is parallel to grad g. Half-angle tangents that are rational make sines and cosines rational, and the
 condition that mu_c is stationary along the table is then a quadratic equation for m2/m1: the two named states.
+(docs/theory.md, section 6.2.)
 """
 
 import sympy as sp

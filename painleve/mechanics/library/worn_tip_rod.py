@@ -1,4 +1,7 @@
-"""The slender rod with a worn tip: the coefficient of friction depends on the inclination."""
+"""The slender rod with a worn tip: the coefficient of friction depends on the inclination.
+
+Source: docs/theory.md, section 6.2.
+"""
 
 import sympy as sp
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -13,9 +13,10 @@ from painleve.exact.balls import ball
 from painleve.exact.parse import exact_number
 from painleve.exact.signs import Sign, Signed, exact_sign
 from painleve.mechanics.derive import derive
-from painleve.mechanics.friction import Disc, Ellipse, Polygon, Segment
 from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import Number, State, resolve_parameters
+from painleve.theory.sections.listed import theory_of
+from painleve.theory.sections.section import Exact, Points
 
 __all__ = ["ContactProblem", "Numbers", "make_problem", "problem_at"]
 
@@ -138,33 +139,14 @@ def _positive(minor: sp.MatrixBase) -> bool:
     return exact_sign(minor.det(method="berkowitz")).sign is Sign.POSITIVE
 
 
-def _section(
-    scene: Scene, exact: Callable[[sp.MatrixBase], sp.ImmutableMatrix]
-) -> tuple[tuple[sp.ImmutableMatrix, ...], sp.ImmutableMatrix | None]:
+def _section(scene: Scene, exact: Exact) -> tuple[Points, sp.ImmutableMatrix | None]:
     """Vertices or shape; neither for the section {0}, which is no friction."""
-    friction = scene.contact.section
-    if not friction.dimension:
-        return (), None
-    for condition in friction.conditions:
+    where = f"scene {scene.name}"
+    for condition in scene.contact.section.conditions:
         value = exact(sp.Matrix([condition.expression]))[0]
         if exact_sign(value).sign not in (Sign.POSITIVE, Sign.ZERO):
             raise InputError(
-                f"scene {scene.name}: {condition.sentence} is {float(ball(value).mid()):.6g} at this q; "
+                f"{where}: {condition.sentence} is {float(ball(value).mid()):.6g} at this q; "
                 "it must be zero or positive"
             )
-    if isinstance(friction, Segment):
-        ends = exact(sp.Matrix([-friction.minus, friction.plus]))
-        return () if ends.is_zero_matrix else tuple(sp.ImmutableMatrix([end]) for end in ends), None
-    if isinstance(friction, Polygon):
-        corners = exact(sp.Matrix(friction.vertices))
-        return () if corners.is_zero_matrix else tuple(corners[i, :].T for i in range(corners.rows)), None
-    assert isinstance(friction, Disc | Ellipse)
-    shape = exact(friction.map)
-    if shape.is_zero_matrix:
-        return (), None
-    if exact_sign(shape.det()).sign is not Sign.POSITIVE:
-        raise InputError(
-            f"scene {scene.name}: the ellipse of friction has a semi-axis of length zero at this q; "
-            "give friction along a line as a segment"
-        )
-    return (), shape
+    return theory_of(scene.contact).exact_section(where, exact)

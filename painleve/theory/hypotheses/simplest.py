@@ -13,7 +13,7 @@ from flint import arb
 from painleve.exact.signs import Sign, exact_sign
 from painleve.theory.hypotheses.region import BITS, Box, Region, as_ball
 
-__all__ = ["simplest_fraction", "simplest_points"]
+__all__ = ["complexity", "simplest_fraction", "simplest_points"]
 
 MAX_POINTS = 27  # three numbers for each of three coordinates
 
@@ -39,6 +39,18 @@ def simplest_points(region: Region, coordinates: tuple[int, ...], box: Box) -> I
             q[i] = x
         if _is_inside(region, q):
             yield tuple(q)
+
+
+def complexity(region: Region, coordinates: tuple[int, ...], box: Box) -> int:
+    """How simple the simplest configuration of the box is: the sum of its denominators."""
+    choices = (_numbers(region, i, box.low[k], box.high[k]) for k, i in enumerate(coordinates))
+    return sum(min(_denominator(x) for x in numbers) for numbers in choices)
+
+
+def _denominator(x: sp.Expr) -> int:
+    """Of a fraction or a fraction of pi; the state's own number counts as whole."""
+    factor = x.as_coeff_Mul()[0]
+    return int(factor.q) if factor.is_Rational else 1
 
 
 def _numbers(region: Region, i: int, low: Fraction, high: Fraction) -> list[sp.Expr]:

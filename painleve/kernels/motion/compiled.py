@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+from painleve.core.stepping import Step
 from painleve.kernels.files import load_generated
-from painleve.kernels.motion_rows import motion_rows
-from painleve.kernels.motion_source import motion_source
+from painleve.kernels.motion.rows import motion_rows
+from painleve.kernels.motion.source import motion_source
 from painleve.kernels.rows import Rows
 from painleve.mechanics.derive import Derivation, derive
 from painleve.mechanics.scene import Scene
@@ -19,7 +20,7 @@ __all__ = ["Motion", "make_motion"]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Motion:
-    """A scene's compiled motion (see painleve.kernels.motion_source) and the digest that names its source."""
+    """A scene's compiled motion (painleve.kernels.motion.source) and the digest that names its source."""
 
     derivation: Derivation
     rows: Rows
@@ -30,7 +31,7 @@ class Motion:
     inertia_at: Callable[..., tuple[float, ...]]
     force_at: Callable[..., tuple[float, ...]]
     drift_at: Callable[..., tuple[float, ...]]
-    step: Callable[..., tuple]
+    step: Callable[..., Step]
     run: Callable[..., tuple[int, int, int]]
     run_members: Callable[..., None]
     tabulate: Callable[..., None]

@@ -1,6 +1,6 @@
 """The rows of a scene's motion: those of its law, and in space also what makes impulses physical.
 
-The law in space takes discs and ellipses as the unit disc (painleve.kernels.rows). A trajectory gives impulses in the
+The law in space takes discs and ellipses as the unit disc (painleve.core.rows). A trajectory gives impulses in the
 scene's own tangents H, which cannot be found from H E where a coefficient of friction vanishes. So these follow:
     H_1 (d), H_2 (d), M^-1 H_1 (d), M^-1 H_2 (d), E_11, E_12, E_21, E_22          (E = 1 for a polygon)
 """

@@ -1,0 +1,41 @@
+"""Template: planar friction in a step. Contact velocities are (v_n, v_t), impulses (r_n, r_t)."""
+
+from painleve._jit import jit
+from painleve.core import steps
+from painleve.core.rows import row_layout
+from painleve.kernels.motion.sample import D
+
+NO_IMPULSE = (0.0, 0.0)
+
+
+@jit
+def contact_velocity(rows, v):
+    return steps.contact_velocity(rows, D, True, v)
+
+
+@jit
+def impulse(rows, contact, bias):
+    r_n, r_t, branch = steps.contact_problem(rows, D, True, contact[0], contact[1], bias)
+    return (r_n, r_t), branch
+
+
+@jit
+def respond(rows, r, v):
+    at = row_layout(D, 1)
+    return tuple(v[j] + rows[at.Y_n + j] * r[0] + rows[at.Y_t + j] * r[1] for j in range(D))
+
+
+@jit
+def store_impulse(x, i, rows, r):
+    x[i, 0], x[i, 1] = r
+
+
+@jit
+def kind_of_change(step, free, since, speed):
+    r, contact = step.impulse, step.contact
+    return steps.kind_of_change(step.rows, D, True, contact[0], contact[1], r[0], r[1], step.branch, free, since, speed)
+
+
+@jit
+def solutions(rows, contact, gap_rate):
+    return steps.solutions(rows, D, True, gap_rate, contact[1], 0.0)

@@ -1,0 +1,1 @@
+"""What the theory knows of each friction section, a file each; `listed` is the list."""
