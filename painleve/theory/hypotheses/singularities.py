@@ -19,7 +19,7 @@ from sympy.logic.boolalg import Boolean
 from painleve.theory.hypotheses.claims import MAX_FACTORED, Claim, ClaimKind
 from painleve.theory.hypotheses.region import Region
 
-__all__ = ["Jump", "Kink", "Level", "Singularity", "plain", "singularities"]
+__all__ = ["Discontinuity", "Kink", "Level", "Singularity", "plain", "singularities"]
 
 _ONE = sp.Integer(1)
 _INEQUALITIES = (sp.StrictLessThan, sp.LessThan, sp.StrictGreaterThan, sp.GreaterThan)
@@ -43,7 +43,7 @@ class Kink:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Jump:
+class Discontinuity:
     """The node is the one formula where the argument is positive and the other where it is negative, near a point at
     which the argument vanishes and `given` does not."""
 
@@ -58,7 +58,7 @@ class Singularity:
     node: sp.Expr
     argument: sp.Expr
     kind: ClaimKind | None
-    how: Kink | Jump | None = None
+    how: Kink | Discontinuity | None = None
 
     @property
     def claim(self) -> Claim:
@@ -116,11 +116,11 @@ def _of_node(region: Region, node: sp.Expr, level: Level) -> Iterator[Singularit
             yield Singularity(node=node, argument=argument, kind=ClaimKind.NONZERO, how=kink)
     elif node.func is sp.sign:
         if region.used([argument]):
-            step = Jump(sides=(_ONE, -_ONE))
+            step = Discontinuity(sides=(_ONE, -_ONE))
             yield Singularity(node=node, argument=argument, kind=ClaimKind.NONZERO, how=step)
     elif isinstance(node, sp.Piecewise) and _has_two_parts(node):
         first, second = node.args
-        parts = Jump(sides=(first.expr, second.expr))
+        parts = Discontinuity(sides=(first.expr, second.expr))
         yield Singularity(node=node, argument=first.cond.lhs - first.cond.rhs, kind=ClaimKind.NONZERO, how=parts)
     else:
         yield Singularity(node=node, argument=argument, kind=None)
@@ -149,7 +149,7 @@ def _of_arctangent(region: Region, node: sp.Expr) -> Iterator[Singularity]:
         return  # what is divided by has a singularity of its own
     above, below = sp.fraction(sp.together(node.args[0]))
     if region.used([below]):
-        how = Jump(sides=(sp.pi / 2, -sp.pi / 2), given=above)
+        how = Discontinuity(sides=(sp.pi / 2, -sp.pi / 2), given=above)
         yield Singularity(node=node, argument=below, kind=ClaimKind.NONZERO, how=how)
 
 

@@ -14,7 +14,7 @@ from flint import arb
 from painleve.theory.hypotheses.claims import Claim, ClaimKind, ClaimStatus, Decision, decide
 from painleve.theory.hypotheses.findings import Finding
 from painleve.theory.hypotheses.region import Place, Region
-from painleve.theory.hypotheses.singularities import Jump, Kink, Level, Singularity, plain, singularities
+from painleve.theory.hypotheses.singularities import Discontinuity, Kink, Level, Singularity, plain, singularities
 
 __all__ = ["Level", "check_smoothness"]
 
@@ -78,7 +78,7 @@ def _breaks(region: Region, expressions: Sequence[sp.Expr], s: Singularity, plac
         elif isinstance(s.how, Kink):
             if _has_kink(region, outer, z, s.argument, s.how, place):
                 return f"is not continuously differentiable: {_shown(s.node)} has a kink", place
-        elif isinstance(s.how, Jump):
+        elif isinstance(s.how, Discontinuity):
             broken = _across(region, outer, z, s.argument, s.how, place)
             if broken is not None:
                 return f"{broken[0]}: {_shown(s.node)} {broken[1]}", place
@@ -108,7 +108,7 @@ def _has_kink(region: Region, outer: sp.Expr, z: sp.Symbol, argument: sp.Expr, k
 
 
 def _across(
-    region: Region, outer: sp.Expr, z: sp.Symbol, argument: sp.Expr, jump: Jump, place: Place
+    region: Region, outer: sp.Expr, z: sp.Symbol, argument: sp.Expr, jump: Discontinuity, place: Place
 ) -> tuple[str, str] | None:
     """What the formula loses where its two sides meet, and what the part does there; None where it may lose nothing."""
     sides = [outer.xreplace({z: side}) for side in jump.sides]
