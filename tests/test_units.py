@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import builtins
+import re
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 import sympy as sp
@@ -34,6 +36,12 @@ def test_the_units_of_a_library_scene_agree(name: str) -> None:
 
 def test_the_scene_that_new_scene_writes_agrees() -> None:
     assert check_units(read(TEMPLATE)).agreement is Agreement.AGREES
+
+
+def test_the_readme_s_own_scene_agrees() -> None:
+    readme = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+    (text,) = re.findall(r"```toml\n(.*?)```", readme, flags=re.DOTALL)
+    assert check_units(read(text)).open == ()
 
 
 # --- what does not agree ---------------------------------------------------------------------------------------------
