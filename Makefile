@@ -4,28 +4,36 @@
 PYTHON ?= python3
 STUDY ?= theorem1
 STUDY_FLAGS ?=
+MUTANTS_FLAGS ?=
 
 SHELL := /bin/sh
 BIN := .venv/bin
 # The stamp is named by what was installed, so that it vanishes when the lock or the metadata change, and a second run
 # has nothing to do and asks nobody.
 STAMP := .venv/installed-$(shell cat requirements.lock pyproject.toml | cksum | tr ' ' '-')
+MUTANTS_STAMP := .venv/mutants-$(shell cat requirements.lock mutants.lock | cksum | tr ' ' '-')
 NOTEBOOKS := $(patsubst notebooks/%.py,build/notebooks/%.ipynb,$(wildcard notebooks/*.py))
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install study test lint types contracts lock clean
+.PHONY: help install study test test-slow mutants lint types contracts lock clean
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
 
 install: $(STAMP) ## install the locked versions and the package itself into .venv
 
 study: install ## install, then run the study of Theorem 1 (STUDY=name for another, STUDY_FLAGS=--quick for a reduced run)
 	$(BIN)/painleve study $(STUDY) $(STUDY_FLAGS)
 
-test: lint types contracts $(NOTEBOOKS) ## install, then check the code, run the tests and execute the notebooks
-	$(BIN)/python -m pytest -n 2 --dist loadfile tests $(if $(NOTEBOOKS),--nbmake --nbmake-timeout=300 $(NOTEBOOKS))
+test: lint types contracts $(NOTEBOOKS) ## install, then check the code, run the tests but the slow ones, execute the notebooks
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not slow" tests $(if $(NOTEBOOKS),--nbmake --nbmake-timeout=300 $(NOTEBOOKS))
+
+test-slow: install ## install, then run the tests that take more than ten seconds each
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m slow tests
+
+mutants: $(MUTANTS_STAMP) ## install mutmut, then try changes of proofs that no test may miss (MUTANTS_FLAGS="--sample 0" for all)
+	$(BIN)/python tests/mutants.py $(MUTANTS_FLAGS)
 
 lint: install ## check the code with ruff
 	$(BIN)/ruff check .
@@ -40,6 +48,8 @@ contracts: install ## check that every room imports only from the floors below i
 lock: ## choose the locked versions anew after a change of the dependencies (needs uv)
 	uv pip compile pyproject.toml --output-file requirements.lock --quiet --universal --generate-hashes \
 		--all-extras --group build --no-emit-index-url --custom-compile-command 'make lock'
+	uv pip compile --group pyproject.toml:mutants --output-file mutants.lock --quiet --universal --generate-hashes \
+		--constraint requirements.lock --no-emit-index-url --custom-compile-command 'make lock'
 
 clean: ## remove what make and the tools made, but not data/
 	rm -rf .venv build .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
@@ -58,12 +68,22 @@ $(BIN)/python:
 	@if $(PYTHON) -c 'import ensurepip' 2> /dev/null; then $(PYTHON) -m venv --clear .venv; \
 		else $(PYTHON) -m venv --clear --without-pip .venv; fi
 
+# How to install into .venv: with uv, with its own pip, or with the caller's.
+define find_installer
+if command -v uv > /dev/null; then install="uv pip install --python $(BIN)/python --compile-bytecode"; \
+	elif $(BIN)/python -c 'import pip' 2> /dev/null; then install="$(BIN)/python -m pip install"; \
+	else install="$(PYTHON) -m pip --python $(BIN)/python install"; fi; set -e
+endef
+
 $(STAMP): $(BIN)/python
 	@rm -f .venv/installed-*
 	@echo "installing the versions of requirements.lock into .venv (a minute or two, once)"
-	@if command -v uv > /dev/null; then install="uv pip install --python $(BIN)/python --compile-bytecode"; \
-	elif $(BIN)/python -c 'import pip' 2> /dev/null; then install="$(BIN)/python -m pip install"; \
-	else install="$(PYTHON) -m pip --python $(BIN)/python install"; fi; set -e; \
+	@$(find_installer); \
 	$$install --quiet --require-hashes -r requirements.lock; \
 	$$install --quiet --no-deps --no-build-isolation -e .
+	@touch $@
+
+$(MUTANTS_STAMP): $(STAMP)
+	@rm -f .venv/mutants-*
+	@$(find_installer); $$install --quiet --require-hashes -r mutants.lock
 	@touch $@

@@ -41,3 +41,7 @@ def test_a_matrix_of_transcendental_entries_needs_no_determinant(monkeypatch):
     M = sp.Matrix([[sp.exp(q), sp.sin(q)], [sp.sin(q), sp.cos(q)]])
     assert least_minor_sign(M) is Sign.POSITIVE
     assert least_minor_sign(M - 2 * sp.eye(2)) is Sign.NEGATIVE
+    a, b, c = sp.exp(q), sp.cos(q), sp.sin(q)
+    larger = sp.Matrix([[a, b, c], [b, 2 * a, b], [c, b, a]])
+    assert least_minor_sign(larger) is Sign.POSITIVE
+    assert least_minor_sign(larger - sp.diag(0, 0, 2)) is Sign.NEGATIVE

@@ -16,6 +16,7 @@ ROOT = Path(__file__).parents[1]
 FOLDERS = (".ci", "data/reference", "docs", "notebooks", "painleve", "studies", "tests")
 METADATA = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 LOCK = (ROOT / "requirements.lock").read_text(encoding="utf-8")
+MUTANTS_LOCK = (ROOT / "mutants.lock").read_text(encoding="utf-8")
 
 # The only places that a text here may send a reader to.
 PUBLISHERS = {"arxiv.org", "doi.org"}
@@ -41,8 +42,8 @@ def direct_requirements() -> list[Requirement]:
     return [Requirement(line) for requirements in lists for line in requirements]
 
 
-def locked_versions(name: str) -> list[str]:
-    pins = re.findall(r"^([A-Za-z0-9._-]+)==([^ ;\\]+)", LOCK, flags=re.MULTILINE)
+def locked_versions(name: str, lock: str = LOCK) -> list[str]:
+    pins = re.findall(r"^([A-Za-z0-9._-]+)==([^ ;\\]+)", lock, flags=re.MULTILINE)
     return [version for pinned, version in pins if canonicalize_name(pinned) == canonicalize_name(name)]
 
 
@@ -63,14 +64,26 @@ def test_every_direct_dependency_is_locked_within_its_bounds(requirement: Requir
     assert all(requirement.specifier.contains(version) for version in versions)
 
 
-def test_every_locked_version_has_a_hash() -> None:
-    entries = re.split(r"^(?=[A-Za-z0-9])", LOCK, flags=re.MULTILINE)[1:]
-    assert len(entries) > len(direct_requirements())
+def test_what_makes_mutants_is_locked_beside_it_and_shares_its_versions() -> None:
+    for line in METADATA["dependency-groups"]["mutants"]:
+        requirement = Requirement(line)
+        versions = locked_versions(requirement.name, MUTANTS_LOCK)
+        assert versions
+        assert all(requirement.specifier.contains(version) for version in versions)
+    for name in ("pytest", "packaging", "pluggy"):
+        assert locked_versions(name, MUTANTS_LOCK) == locked_versions(name)
+
+
+@pytest.mark.parametrize("lock", [LOCK, MUTANTS_LOCK], ids=["requirements", "mutants"])
+def test_every_locked_version_has_a_hash(lock: str) -> None:
+    entries = re.split(r"^(?=[A-Za-z0-9])", lock, flags=re.MULTILINE)[1:]
+    assert len(entries) > 10
     assert [entry.split()[0] for entry in entries if "--hash=sha256:" not in entry] == []
 
 
-def test_the_lock_names_no_address_and_no_path() -> None:
-    assert re.findall(r"[a-z+]+://\S*|--(?:extra-)?index-url|--find-links|(?<![\w.])/\S+", LOCK) == []
+@pytest.mark.parametrize("lock", [LOCK, MUTANTS_LOCK], ids=["requirements", "mutants"])
+def test_a_lock_names_no_address_and_no_path(lock: str) -> None:
+    assert re.findall(r"[a-z+]+://\S*|--(?:extra-)?index-url|--find-links|(?<![\w.])/\S+", lock) == []
 
 
 def test_no_text_sends_a_reader_anywhere_but_to_publishers() -> None:
@@ -93,7 +106,14 @@ def test_the_readme_sets_up_with_two_commands_that_make_knows_and_ci_runs() -> N
     assert commands == ["make study", "make test"]
     assert {command.removeprefix("make ") for command in commands} <= set(makefile_phony_targets())
     ci_lines = (ROOT / ".ci/run").read_text(encoding="utf-8").splitlines()
-    assert [line for line in ci_lines if line.startswith("make ")] == ["make test", "make study STUDY_FLAGS=--quick"]
+    expected = ["make test", "make test-slow", "make study STUDY_FLAGS=--quick"]
+    assert [line for line in ci_lines if line.startswith("make ")] == expected
+
+
+def test_every_test_is_run_by_one_of_the_two_targets_that_ci_runs() -> None:
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    runs = re.findall(r"-m pytest (.+)$", makefile, flags=re.MULTILINE)
+    assert [re.findall(r'-m ("not slow"|slow) tests', run) for run in runs] == [['"not slow"'], ["slow"]]
 
 
 def test_make_help_says_a_sentence_about_every_target() -> None:
