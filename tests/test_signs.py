@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Iterator
 from fractions import Fraction
 
 import flint
 import mpmath
 import pytest
 import sympy
+from flint import arb
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from sympy import Rational, acos, asin, atan, atan2, cos, cosh, cot, exp, log, pi, root, sin, sinh, sqrt, tan, tanh
 
+from painleve.exact import signs
+from painleve.exact.balls import ball
 from painleve.exact.signs import Sign, _size, exact_sign
 
 SECONDS = 30.0  # of the processor: what is unbounded takes hours, what is bounded far less on any machine
@@ -59,6 +63,8 @@ ZEROS = {
     "sum of doubled angles": sin(2 * atan(Rational(1, 7)) - 2 * atan(Rational(1, 12)))
     - (Rational(7, 25) * Rational(143, 145) - Rational(24, 25) * Rational(24, 145)),
     "half of atan": tan(atan(2) / 2) - (sqrt(5) - 1) / 2,
+    "cosine of half an atan": cos(atan(2) / 2) ** 2 - (1 + 1 / sqrt(5)) / 2,
+    "sine of a quarter of an acos": 2 * sin(acos(Rational(1, 3)) / 4) ** 2 + cos(acos(Rational(1, 3)) / 2) - 1,
     "twice asin": sin(2 * asin(Rational(1, 3))) - 4 * sqrt(2) / 9,
     "three times acos": cos(3 * acos(Rational(1, 3))) - (Rational(4, 27) - 1),
     "atan2": sin(2 * atan2(3, -4)) + Rational(24, 25),
@@ -157,6 +163,54 @@ def test_the_size_of_a_root_bounds_all_of_its_conjugates(coefficients: tuple[int
     largest = max(float(abs(value).mid()) for value, _ in roots)
     assert 2**size.lower == coefficients[0]
     assert size.lower + math.log2(largest) / k <= size.upper + 1e-9
+
+
+DYADIC = st.integers(1, 40).flatmap(lambda n: st.integers(0, 6).map(lambda k: Rational(n, 2**k)))
+SUMS = st.recursive(
+    DYADIC | st.integers(2, 30).map(sqrt),
+    lambda inner: st.one_of(
+        st.lists(inner, min_size=2, max_size=4).map(lambda parts: sympy.Add(*parts, evaluate=False)),
+        st.lists(inner, min_size=2, max_size=3).map(lambda parts: sympy.Mul(*parts, evaluate=False)),
+        st.tuples(inner, st.integers(2, 3)).map(lambda t: sympy.Pow(t[0], t[1], evaluate=False)),
+        st.tuples(inner, st.integers(2, 3)).map(lambda t: sympy.Pow(t[0], Rational(1, t[1]), evaluate=False)),
+    ),
+    max_leaves=6,
+)
+
+
+@given(SUMS)
+@settings(max_examples=80)
+def test_the_size_of_a_number_bounds_it_and_with_it_all_of_its_conjugates(number: sympy.Expr) -> None:
+    """Of positive terms, so that no conjugate is larger; with denominators 2^k, of which L is the product."""
+    size = _size(number, {})
+    assert not ball(number, bits=200) > arb(2) ** (size.upper - size.lower)
+
+
+def test_every_point_of_every_grid_is_within_the_sizes_that_the_separation_bound_is_told(monkeypatch) -> None:
+    """Where a grid meets a division by zero the next one is tried, with larger integers."""
+    told: list[int] = []
+    met: list[int] = []
+    separation, vanishes = signs._separation, signs._vanishes_on
+
+    def note_sizes(form: sympy.Expr, unknowns: dict) -> int:
+        told.append(min(size.upper for size in unknowns.values()))
+        return separation(form, unknowns)
+
+    def note_points(form: sympy.Expr, unknowns: list, grid: Iterator, separation: int) -> bool:
+        points = list(grid)
+        met.append(max(max(point) for point in points))
+        return vanishes(form, unknowns, iter(points), separation) and len(met) % 4 == 0
+
+    monkeypatch.setattr(signs, "_separation", note_sizes)
+    monkeypatch.setattr(signs, "_vanishes_on", note_points)
+    one = (sympy.E + 1) ** 9 - sympy.expand((sympy.E + 1) ** 9)
+    two = (sympy.E + sympy.pi) ** 4 - sympy.expand((sympy.E + sympy.pi) ** 4)
+    for identity in (one, two):
+        assert exact_sign(identity).sign is Sign.ZERO
+        assert len(met) == 4
+        assert max(met) <= 2 ** min(told)
+        told.clear()
+        met.clear()
 
 
 def near(value: sympy.Expr, digits: int = 420) -> Rational:
@@ -296,6 +350,8 @@ def test_the_reason_says_how_it_was_decided() -> None:
     assert "ball arithmetic at 256 bits" in exact_sign(exp(pi * sqrt(163)) - 640320**3 - 744).reason
     assert "field of degree at most 16" in exact_sign(ZEROS["nested square roots"]).reason
     assert "whatever the values of tan(1/2)" in exact_sign(ZEROS["Pythagoras"]).reason
+    powers = sympy.Add((exp(sqrt(2)) + 1) ** 2, -exp(2 * sqrt(2)), -2 * exp(sqrt(2)), -1, evaluate=False)
+    assert "whatever the values of exp(sqrt(2))" in exact_sign(powers).reason
     assert "gamma" in exact_sign(sympy.gamma(Rational(1, 3))).reason
 
 
