@@ -5,6 +5,7 @@ points away from A attains it. Over one configuration in contact the law is piec
 member of each branch is found globally (painleve.core.branch_excess). What is left is a search over the shape offsets
 and, where the tip slips, over its impulse: a grid on every chart, then a stencil that shrinks about the best places.
 The search finds the supremum over the closure, and that is an estimate; the bound is the distance of one true member.
+Where the law depends on three coordinates or more it goes along rays (painleve.asymptotics.ray_search).
 """
 
 from __future__ import annotations
@@ -18,8 +19,9 @@ import numpy as np
 
 from painleve.asymptotics.distance import Attained, Distance
 from painleve.asymptotics.free_member import free_member, is_inside
-from painleve.asymptotics.local import BITS, Arithmetic, LocalProblem, make_local_problem
+from painleve.asymptotics.local import BITS, Arithmetic, Expansion, LocalProblem, make_local_problem
 from painleve.asymptotics.member import Member, base_balls, make_member, row_balls
+from painleve.asymptotics.ray_search import RaySearch
 from painleve.asymptotics.sample import KINDS, check_eps
 from painleve.asymptotics.search import SLIPS, FarthestMember, PlaneSearch
 from painleve.asymptotics.space.optimise import optimise_in_space
@@ -31,7 +33,7 @@ from painleve.sets import Bounds, excess_of_segment_from_profile
 from painleve.theory.domain import check_domain
 from painleve.theory.limit_set import LimitSet
 
-__all__ = ["OptimiseOptions", "optimise_distance"]
+__all__ = ["OptimiseOptions", "farthest_member", "optimise_distance"]
 
 NUDGES = (0.0, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9)  # off the boundary of a branch, to be inside for certain
 SHADOW = 1e-9  # of eps: how near witnesses of e(A, A_eps) are asked to come
@@ -54,8 +56,10 @@ def optimise_distance(limit: LimitSet, eps: float, options: OptimiseOptions | No
     """Both excesses by optimisation: e(A_eps, A) is bounded from below by a true member at the maximum found, whose
     estimate and error are in the settings; e(A, A_eps) from above by witnesses, or by the nearest members found.
 
-    Raises InputError for eps <= 0, a state whose limit set is undecided, a ball on which the law is not proved to be
-    defined (painleve.theory.domain) and, in the plane, more than two shape coordinates.
+    For three shape coordinates and more the search is from many starts and may miss a maximum, as in space.
+
+    Raises InputError for eps <= 0, a state whose limit set is undecided and a ball on which the law is not proved to be
+    defined (painleve.theory.domain).
     """
     options, eps = options or OptimiseOptions(), check_eps(eps)
     if limit.kind == "undecided":
@@ -64,20 +68,15 @@ def optimise_distance(limit: LimitSet, eps: float, options: OptimiseOptions | No
     if limit.state.scene.contact.section.dimension == 2:
         return optimise_in_space(limit, eps, starts=options.starts, arithmetic=options.arithmetic)
     problem = make_local_problem(limit)
-    if len(problem.shape) > 2:
-        raise InputError(
-            f"optimise: scene {limit.state.scene.name} has {len(problem.shape)} coordinates on which the "
-            "law depends; at most 2 are searched; use the method sample"
-        )
     expansion = problem.expansion(eps, options.arithmetic)
-    differences = partial(problem.differences, eps, expansion)
-    search = PlaneSearch(problem, eps, KINDS[limit.kind], differences, starts=options.starts)
+    search, many = _search(problem, eps, expansion, options.starts), len(problem.shape) > 2
     forward, estimate, error = _excess_of_members(search)
     backward, how = _excess_of_limit(search)
     evaluations = sum(search.counts.values())
     member = forward.member
     ending = (
-        f"e(A_eps, A) is estimated as {estimate:.12g}, to about {error:.0e} of it, on the branch "
+        f"e(A_eps, A) is estimated as {estimate:.12g}, to about {error:.0e} of it"
+        f"{' if the search missed no higher maximum' if many else ''}, on the branch "
         f"{member.branch.label if member else 'free'}; its bound is the distance of that member; e(A, A_eps): {how}"
     )
     return Distance(
@@ -96,6 +95,20 @@ def optimise_distance(limit: LimitSet, eps: float, options: OptimiseOptions | No
             "arithmetic": f"taylor, order {expansion.order}" if expansion else "plain",
         },
     )
+
+
+def farthest_member(problem: LocalProblem, eps: float) -> Member:
+    """The member of A_eps that is farthest from A among those that the search finds, in the plane."""
+    search = _search(problem, eps, problem.expansion(eps), OptimiseOptions().starts)
+    member = _excess_of_members(search)[0].member
+    assert member is not None
+    return member
+
+
+def _search(problem: LocalProblem, eps: float, expansion: Expansion | None, starts: int) -> PlaneSearch:
+    kind = RaySearch if len(problem.shape) > 2 else PlaneSearch
+    differences = partial(problem.differences, eps, expansion)
+    return kind(problem, eps, KINDS[problem.limit.kind], differences, starts=starts)
 
 
 def _excess_of_members(search: PlaneSearch) -> tuple[Attained, float, float]:

@@ -18,7 +18,7 @@ from painleve.asymptotics.local import LocalProblem
 from painleve.core.branch_excess import REACH, branch_excesses
 from painleve.core.codes import ContactMode
 
-__all__ = ["SLIPS", "FarthestMember", "PlaneSearch"]
+__all__ = ["SLIPS", "FarthestMember", "PlaneSearch", "lattice"]
 
 GRIDS = {0: 1, 1: 33, 2: 9, 3: 9}  # points an axis of a box of that size
 LAST_STEP = 2.0**-36
@@ -126,14 +126,20 @@ class PlaneSearch:
         """The best place of one chart; None where it holds no member."""
         size = chart.size + (branch in SLIPS)
         axis = np.linspace(0.0, 1.0, GRIDS[size])
-        grid = _lattice(axis, size)
+        grid = lattice(axis, size)
         value = self.values(branch, chart, grid, kind)[0]
         peaks = _peaks(value.reshape((axis.size,) * size))[: self.starts]
         if not peaks.size:
             return None
-        first = self._refine(branch, chart, grid[:, peaks], 0.5 / (axis.size - 1) if size else 0.0, kind)
+        return self.climb(branch, chart, grid[:, peaks], 0.5 / (axis.size - 1) if size else 0.0, kind)
+
+    def climb(
+        self, branch: ContactMode, chart: PlaneChart, starts: np.ndarray, step: float, kind: int
+    ) -> FarthestMember:
+        """The best place that is reached from the starts (chart.size [+ 1], n), and what a second climb added."""
+        first = self._refine(branch, chart, starts, step, kind)
         top = first[:, [int(np.argmax(first[-1]))]]
-        again = self._refine(branch, chart, top[:-1], 1e-3 if size else 0.0, kind)
+        again = self._refine(branch, chart, top[:-1], 1e-3 if len(starts) else 0.0, kind)
         value, x, dv, impulse = self.values(branch, chart, again[:-1], kind)
         return FarthestMember(
             value=float(value[0]),
@@ -144,15 +150,19 @@ class PlaneSearch:
             error=abs(float(again[-1, 0] - top[-1, 0])),
         )
 
+    def stencil(self, size: int, turn: int) -> np.ndarray:
+        """(size, points) around a place, the place itself among them; turn: the number of the round."""
+        return lattice(np.array([0.0, -1.0, 1.0]), size)
+
     def _refine(self, branch: ContactMode, chart: PlaneChart, places: np.ndarray, step: float, kind: int) -> np.ndarray:
         """Move each place to the best point of a stencil, which grows on a slope and shrinks at a top."""
         size, n = places.shape
-        stencil = _lattice(np.array([0.0, -1.0, 1.0]), size)
         best, steps, value = places.copy(), np.full(n, step), self.values(branch, chart, places, kind)[0]
-        for _ in range(MOST_ROUNDS):
+        for turn in range(MOST_ROUNDS):
             at = np.flatnonzero(steps > LAST_STEP)
             if not at.size:
                 break
+            stencil = self.stencil(size, turn)
             tried = np.clip(best[:, at, None] + steps[at, None] * stencil[:, None, :], 0.0, 1.0)
             values = self.values(branch, chart, tried.reshape(size, -1), kind)[0].reshape(at.size, -1)
             winner = np.argmax(values, axis=1)
@@ -164,7 +174,7 @@ class PlaneSearch:
         return np.vstack([best, value])
 
 
-def _lattice(axis: np.ndarray, size: int) -> np.ndarray:
+def lattice(axis: np.ndarray, size: int) -> np.ndarray:
     """All points with coordinates from the axis, (size, n)."""
     return np.array(list(product(axis, repeat=size)), dtype=float).reshape(axis.size**size, size).T
 

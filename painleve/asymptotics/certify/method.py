@@ -25,6 +25,7 @@ from painleve.asymptotics.certify.preimage import candidate_member, free_member
 from painleve.asymptotics.distance import Attained, Distance
 from painleve.asymptotics.local import LocalProblem, make_local_problem
 from painleve.asymptotics.member import Member
+from painleve.asymptotics.optimise import farthest_member
 from painleve.asymptotics.sample import check_eps
 from painleve.asymptotics.witness import find_family
 from painleve.core.codes import ContactMode
@@ -118,7 +119,8 @@ def _ending(bounds: Bounds, evaluations: int, options: CertifyOptions) -> str:
 def _excess_of_members(
     problem: LocalProblem, eps: float, excluded: ContactMode | None, options: CertifyOptions
 ) -> _Enclosure:
-    """Refine the piece of largest bound until it is near enough to the farthest member, or the budget ends."""
+    """Refine the piece of largest bound until it is near enough to the farthest member, or the budget ends: then the
+    member that an optimiser finds may be farther."""
     searches = tuple(BoxSearch(piece) for piece in contact_pieces(problem, eps) if piece.branch is not excluded)
     member = free_member(problem, eps)
     tried: set[Candidate] = set()
@@ -126,7 +128,10 @@ def _excess_of_members(
         member = _farthest(problem, eps, member, searches, tried)
         target = member.distance[0] / eps * (1.0 + options.width / 2.0)
         worst = max(searches, key=lambda s: s.pending)
-        if worst.pending <= target or sum(s.evaluations for s in searches) >= options.budget:
+        if worst.pending <= target:
+            break
+        if sum(s.evaluations for s in searches) >= options.budget:
+            member = max(member, farthest_member(problem, eps), key=lambda m: m.distance[0])
             break
         worst.refine(target, BATCH)
     upper = max([1.0, *(s.upper for s in searches)])
