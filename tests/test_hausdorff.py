@@ -36,7 +36,7 @@ def segments(d):
     return st.builds(LineSegment, vectors(d), vectors(d))
 
 
-def shapes(d):
+def point_sets(d):
     return st.builds(Points, members(d)) | segments(d)
 
 
@@ -130,7 +130,7 @@ def test_a_point_off_its_own_place_can_be_nearest_elsewhere():
     assert (sup, place, index) == (pytest.approx(math.hypot(3.0, 1.25), rel=ULP), 4.0, 1)
 
 
-# --- every pair of shapes ------------------------------------------------------------------------------------------
+# --- every pair of sets --------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("scale", [1e-12, 1e-6, 1.0])
@@ -192,7 +192,7 @@ def test_the_excess_between_segments_is_that_of_a_fine_grid_up_to_its_radius(X, 
 
 
 @quick
-@given(vectors(3), shapes(3))
+@given(vectors(3), point_sets(3))
 def test_a_degenerate_segment_measures_as_the_point_that_it_is(point, other):
     as_segment, as_points = hausdorff(LineSegment(point, point), other), hausdorff(Points([point]), other)
     assert value(as_segment.forward.bounds) == pytest.approx(value(as_points.forward.bounds), rel=8 * ULP)
@@ -200,12 +200,12 @@ def test_a_degenerate_segment_measures_as_the_point_that_it_is(point, other):
 
 
 @quick
-@given(shapes(3), shapes(3))
+@given(point_sets(3), point_sets(3))
 def test_the_excess_is_the_distance_between_the_points_that_are_reported(X, Y):
     found = excess(X, Y)
     assert np.linalg.norm(found.attained_at - found.nearest) == pytest.approx(value(found.bounds), abs=128 * ULP)
-    for point, shape in ((found.attained_at, X), (found.nearest, Y)):
-        assert value(excess(Points([point]), shape).bounds) <= 64 * ULP
+    for point, one in ((found.attained_at, X), (found.nearest, Y)):
+        assert value(excess(Points([point]), one).bounds) <= 64 * ULP
     assert value(excess(Points([found.attained_at]), Y).bounds) == pytest.approx(value(found.bounds), abs=128 * ULP)
 
 
@@ -232,14 +232,14 @@ def test_the_pair_of_ends_is_half_a_length_from_its_segment():
 
 
 @quick
-@given(shapes(2), shapes(2), shapes(2))
+@given(point_sets(2), point_sets(2), point_sets(2))
 def test_the_hausdorff_distance_obeys_the_triangle_inequality(X, Y, Z):
     direct, first, second = (value(hausdorff(*pair).bounds) for pair in ((X, Z), (X, Y), (Y, Z)))
     assert direct <= first + second + 128 * ULP
 
 
 @quick
-@given(shapes(2), shapes(2))
+@given(point_sets(2), point_sets(2))
 def test_the_hausdorff_distance_is_symmetric_and_the_larger_excess(X, Y):
     there, back = hausdorff(X, Y), hausdorff(Y, X)
     assert value(there.bounds) == value(back.bounds)
@@ -247,15 +247,15 @@ def test_the_hausdorff_distance_is_symmetric_and_the_larger_excess(X, Y):
 
 
 @quick
-@given(shapes(3), shapes(3), st.integers(0, 2**32 - 1))
+@given(point_sets(3), point_sets(3), st.integers(0, 2**32 - 1))
 def test_excesses_do_not_change_under_rotation_and_translation(X, Y, seed):
     rng = np.random.default_rng(seed)
     rotation, shift = np.linalg.qr(rng.normal(size=(3, 3)))[0], rng.uniform(-8.0, 8.0, 3)
 
-    def moved(shape):
-        if isinstance(shape, LineSegment):
-            return LineSegment(shape.start @ rotation.T + shift, shape.end @ rotation.T + shift)
-        return Points(shape.members @ rotation.T + shift)
+    def moved(one):
+        if isinstance(one, LineSegment):
+            return LineSegment(one.start @ rotation.T + shift, one.end @ rotation.T + shift)
+        return Points(one.members @ rotation.T + shift)
 
     # coordinates below 24 move by a few of their ulps, and so does every distance (1-Lipschitz)
     assert value(excess(moved(X), moved(Y)).bounds) == pytest.approx(value(excess(X, Y).bounds), abs=24 * 16 * ULP)
@@ -312,7 +312,7 @@ def test_measuring_a_cloud_from_a_segment_takes_no_memory_that_grows_with_the_cl
     assert peak < cloud.members.nbytes / 2
 
 
-def test_shapes_neither_follow_nor_allow_later_changes_of_their_arrays():
+def test_sets_neither_follow_nor_allow_later_changes_of_their_arrays():
     source = np.zeros((2, 2))
     points = Points(source)
     source[:] = 7.0

@@ -190,13 +190,13 @@ def test_the_sign_of_gamma_is_decided_at_a_critical_friction_and_1e_40_beside_it
 @pytest.mark.parametrize(("scene", "name"), NAMED)
 def test_a_as_a_set_has_u_minus_and_u_tilde_as_its_ends(scene, name):
     limit = limit_of(scene, name)
-    shape = limit.shape
+    A = limit.point_set
     if limit.kind == "segment":
-        assert isinstance(shape, Stretch)
-        ends = np.array([shape.start, shape.end])
+        assert isinstance(A, Stretch)
+        ends = np.array([A.start, A.end])
     else:
-        assert isinstance(shape, Points)
-        ends = np.asarray(shape.members)
+        assert isinstance(A, Points)
+        ends = np.asarray(A.members)
     expected = [limit.u_minus] if limit.kind == "point" else [limit.u_minus, limit.u_plus]
     assert np.array_equal(ends, expected)
     np.testing.assert_allclose(limit.jump, limit.u_plus - limit.u_minus, rtol=0, atol=1e-15)

@@ -101,12 +101,12 @@ def test_the_bound_is_a_true_member_that_attains_the_estimate_to_nine_digits(sce
 
 
 def distance_to(limit: LimitSet, points: np.ndarray) -> float:
-    shape = limit.shape
-    if isinstance(shape, LineSegment):
-        unit = shape.direction
-        along = np.clip((points - shape.start) @ unit, 0.0, shape.length)
-        return float(np.linalg.norm(points - shape.start - along * unit))
-    return float(np.min(np.linalg.norm(points - shape.members, axis=1)))
+    A = limit.point_set
+    if isinstance(A, LineSegment):
+        unit = A.direction
+        along = np.clip((points - A.start) @ unit, 0.0, A.length)
+        return float(np.linalg.norm(points - A.start - along * unit))
+    return float(np.min(np.linalg.norm(points - A.members, axis=1)))
 
 
 def slsqp(limit: LimitSet, eps: float, starts: int = 6) -> float:

@@ -126,7 +126,7 @@ RESULTS: dict[str, tuple[Callable[[], object], str]] = {
         "Verdict(negative, proved, slope 1)",
     ),
     "Hausdorff": (
-        lambda: hausdorff(Cloud([[0.0, 0.0, 0.0]]), limit().shape),
+        lambda: hausdorff(Cloud([[0.0, 0.0, 0.0]]), limit().point_set),
         "Hausdorff(forward ≥ ... (lower bound), backward ≤ ... (upper bound))",
     ),
 }

@@ -194,14 +194,14 @@ def test_the_sample_kept_is_the_farthest_of_all(scene: str, state: str, sampler:
     problem, eps = problem_of(scene, state), 1e-1
     attained = sample_distance(problem.limit, eps, SampleOptions(samples=SAMPLES, sampler=sampler)).excess_Aeps_A
     members, cloud = brute_force(problem, eps, sampler)
-    farthest = sets.excess(cloud, problem.limit.shape)
+    farthest = sets.excess(cloud, problem.limit.point_set)
     assert attained.bounds.lower == pytest.approx(farthest.bounds.lower, rel=1e-12)
     assert attained.member is not None
     # Where all that stick stand still, many are the farthest but for rounding: the one kept must be one of them.
     index = int(np.argmin(np.abs(members["dv"] - attained.member.dv).sum(axis=1)))
     assert np.array_equal(members["dv"][index], attained.member.dv)
     assert np.array_equal(members["dq"][index], attained.member.dq)
-    own = sets.excess(sets.Points(cloud.members[index : index + 1]), problem.limit.shape).bounds.upper
+    own = sets.excess(sets.Points(cloud.members[index : index + 1]), problem.limit.point_set).bounds.upper
     assert own == pytest.approx(farthest.bounds.lower, rel=1e-12)
 
 
@@ -213,7 +213,7 @@ def test_the_excess_of_A_is_that_from_the_same_samples_but_for_the_bins(scene: s
     problem, eps = problem_of(scene, state), 1e-1
     bound = sample_distance(problem.limit, eps, SampleOptions(samples=SAMPLES, sampler=sampler)).excess_A_Aeps.bounds
     members, cloud = brute_force(problem, eps, sampler)
-    every = sets.excess(problem.limit.shape, cloud).bounds.upper
+    every = sets.excess(problem.limit.point_set, cloud).bounds.upper
     if problem.limit.kind != "segment":
         assert bound.upper == pytest.approx(every, rel=1e-9)
         return

@@ -97,12 +97,12 @@ def test_the_supremum_tends_to_the_derived_constant_times_the_root_of_eps(scene,
 
 
 def distance_to(limit: LimitSet, point: np.ndarray) -> float:
-    shape = limit.shape
-    if isinstance(shape, LineSegment):
-        unit = shape.direction
-        along = np.clip((point - shape.start) @ unit, 0.0, shape.length)
-        return float(np.linalg.norm(point - shape.start - along * unit))
-    return float(np.min(np.linalg.norm(point - shape.members, axis=1)))
+    A = limit.point_set
+    if isinstance(A, LineSegment):
+        unit = A.direction
+        along = np.clip((point - A.start) @ unit, 0.0, A.length)
+        return float(np.linalg.norm(point - A.start - along * unit))
+    return float(np.min(np.linalg.norm(point - A.members, axis=1)))
 
 
 def evolved(limit: LimitSet, eps: float) -> float:

@@ -54,9 +54,9 @@ def test_the_naive_distances_are_those_of_the_sets_room_but_for_the_grid():
     random = np.random.default_rng(5)
     dq, dv = (uniform_ball(random, 3000, 3, 0.1) for _ in range(2))
     cloud = Cloud(naive_members(A, dq, dv).values)
-    assert forward == pytest.approx(excess(cloud, A.shape).bounds.lower, rel=1e-12)
-    exact = excess(A.shape, cloud).bounds.upper
-    assert exact - A.shape.length / 2000 <= backward <= exact
+    assert forward == pytest.approx(excess(cloud, A.point_set).bounds.lower, rel=1e-12)
+    exact = excess(A.point_set, cloud).bounds.upper
+    assert exact - A.point_set.length / 2000 <= backward <= exact
 
 
 def test_uniform_points_of_a_ball_have_the_moments_of_the_uniform_law():

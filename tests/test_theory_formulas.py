@@ -211,7 +211,7 @@ def test_10_1_coulomb_s_problem_on_a_polygon_can_have_more_than_three_solutions(
             contact_velocity=sp.ImmutableMatrix(velocity),
             responses=G,
             vertices=tuple(sp.ImmutableMatrix(v) for v in vertices),
-            shape=None,
+            section_map=None,
         )
     )
     assert (len(found.solutions), found.enumeration) == (count, Enumeration.COMPLETE)

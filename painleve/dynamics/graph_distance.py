@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from painleve.core.graph_excess import supremum
 from painleve.errors import InputError
 from painleve.sets import Bounds, Excess, Hausdorff
-from painleve.sets.shapes import LARGEST_COORDINATE, FloatArray
+from painleve.sets.point_sets import LARGEST_COORDINATE, FloatArray
 
 __all__ = ["graph_distance", "velocity_graph"]
 

@@ -2,7 +2,7 @@
 
 from painleve.sets.bounds import Bounds, Side, largest
 from painleve.sets.hausdorff import Excess, Hausdorff, excess, excess_of_segment_from_profile, hausdorff
-from painleve.sets.shapes import Cloud, LineSegment, Points, Shape
+from painleve.sets.point_sets import Cloud, LineSegment, Points, PointSet
 
 __all__ = [
     "Bounds",
@@ -10,8 +10,8 @@ __all__ = [
     "Excess",
     "Hausdorff",
     "LineSegment",
+    "PointSet",
     "Points",
-    "Shape",
     "Side",
     "excess",
     "excess_of_segment_from_profile",

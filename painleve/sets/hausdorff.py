@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from painleve.errors import InputError
 from painleve.sets.bounds import Bounds, largest
-from painleve.sets.shapes import LARGEST_COORDINATE, Cloud, FloatArray, LineSegment, Shape
+from painleve.sets.point_sets import LARGEST_COORDINATE, Cloud, FloatArray, LineSegment, PointSet
 
 __all__ = ["Excess", "Hausdorff", "excess", "excess_of_segment_from_profile", "hausdorff"]
 
@@ -66,7 +66,7 @@ class _Farthest(NamedTuple):
     nearest: FloatArray
 
 
-def excess(X: Shape, Y: Shape) -> Excess:
+def excess(X: PointSet, Y: PointSet) -> Excess:
     """e(X, Y) = sup over x in X of dist(x, Y).
 
     Exact between Points and Segments, in any mixture. A Cloud as X gives a lower bound, a Cloud as Y an upper bound.
@@ -83,7 +83,7 @@ def excess(X: Shape, Y: Shape) -> Excess:
     )
 
 
-def hausdorff(X: Shape, Y: Shape) -> Hausdorff:
+def hausdorff(X: PointSet, Y: PointSet) -> Hausdorff:
     """Both excesses between X and Y, whose larger one is d_H. Raises InputError where the dimensions differ."""
     return Hausdorff(forward=excess(X, Y), backward=excess(Y, X))
 
@@ -112,7 +112,7 @@ def excess_of_segment_from_profile(t: FloatArray, rho: FloatArray, length: float
     return float(distances[side, cell]), float(ends[side, cell]), int(cells[cell])
 
 
-def _sided(X: Shape, Y: Shape, distance: float) -> Bounds:
+def _sided(X: PointSet, Y: PointSet, distance: float) -> Bounds:
     match X, Y:
         case Cloud(), Cloud():
             return Bounds.unknown()
@@ -124,7 +124,7 @@ def _sided(X: Shape, Y: Shape, distance: float) -> Bounds:
             return Bounds.exactly(distance)
 
 
-def _farthest(X: Shape, Y: Shape) -> _Farthest:
+def _farthest(X: PointSet, Y: PointSet) -> _Farthest:
     if isinstance(Y, LineSegment):  # the distance to a convex set is convex: over a segment its maximum is at an end
         x = np.stack([X.start, X.end]) if isinstance(X, LineSegment) else X.members
         return _points_from_segment(x, Y)

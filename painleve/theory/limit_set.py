@@ -74,7 +74,7 @@ class LimitSet:
         return np.array([self.state.number(x - y) for x, y in pairs])
 
     @property
-    def shape(self) -> sets.Points | sets.LineSegment:
+    def point_set(self) -> sets.Points | sets.LineSegment:
         """A as a set of the plane of velocities, to rounding. Raises ValueError where A is undecided."""
         if self.kind == "undecided":
             raise ValueError(f"A is undecided: {self.reason}")

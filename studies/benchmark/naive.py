@@ -83,24 +83,24 @@ def naive_members(limit: LimitSet, dq: np.ndarray, dv: np.ndarray) -> NaiveMembe
 
 def point_distances(limit: LimitSet, values: np.ndarray) -> np.ndarray:
     """Distances of points (n, d) from A."""
-    shape = _rounded(limit).shape
-    if not isinstance(shape, LineSegment):
-        return np.min([np.linalg.norm(values - point, axis=1) for point in shape.members], axis=0)
-    jump = shape.end - shape.start
-    share = np.clip((values - shape.start) @ jump / (jump @ jump), 0.0, 1.0)
-    return np.linalg.norm(values - shape.start - share[:, None] * jump, axis=1)
+    A = _rounded(limit).limit
+    if not isinstance(A, LineSegment):
+        return np.min([np.linalg.norm(values - point, axis=1) for point in A.members], axis=0)
+    jump = A.end - A.start
+    share = np.clip((values - A.start) @ jump / (jump @ jump), 0.0, 1.0)
+    return np.linalg.norm(values - A.start - share[:, None] * jump, axis=1)
 
 
 def _grid(limit: LimitSet) -> np.ndarray:
-    shape = _rounded(limit).shape
-    return np.linspace(shape.start, shape.end, GRID) if isinstance(shape, LineSegment) else shape.members
+    A = _rounded(limit).limit
+    return np.linspace(A.start, A.end, GRID) if isinstance(A, LineSegment) else A.members
 
 
 class _Rounded(NamedTuple):
     q: np.ndarray
     p: list[float]
     u: np.ndarray
-    shape: Points | LineSegment
+    limit: Points | LineSegment
 
 
 @lru_cache(maxsize=16)
@@ -109,7 +109,7 @@ def _rounded(limit: LimitSet) -> _Rounded:
     state = limit.state
     q = np.array([state.number(x) for x in state.q])
     p = [state.number(state.parameters[s.name]) for s in state.scene.parameters]
-    return _Rounded(q, p, limit.u_minus, limit.shape)
+    return _Rounded(q, p, limit.u_minus, limit.point_set)
 
 
 def uniform_ball(random: np.random.Generator, n: int, d: int, eps: float) -> np.ndarray:

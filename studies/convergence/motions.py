@@ -23,7 +23,7 @@ from painleve.mechanics.friction import Segment
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.scene import Coordinate, Parameter, Scene, make_scene
 from painleve.mechanics.state import make_state
-from painleve.sets.shapes import FloatArray
+from painleve.sets.point_sets import FloatArray
 
 __all__ = ["PROBLEMS", "Problem", "Reference", "Situation", "make_reference"]
 

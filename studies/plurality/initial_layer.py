@@ -59,7 +59,7 @@ def sweep_initial_layer(
             for k, ratio in enumerate(ratios):
                 right = _right_velocities(as_start(state), h, ratio * h, count, seed)
                 jumps = np.linalg.norm(right - limit.u_plus, axis=1) < np.linalg.norm(right - limit.u_minus, axis=1)
-                both = sets.hausdorff(sets.Cloud(right), limit.shape)
+                both = sets.hausdorff(sets.Cloud(right), limit.point_set)
                 values["fraction"][i, j, k] = jumps.mean()
                 values["lower"][i, j, k], values["upper"][i, j, k] = wilson_interval(jumps.mean(), count)
                 values["excess_from_A"][i, j, k] = both.forward.bounds.lower

@@ -72,7 +72,7 @@ def find_impulses(problem: ContactProblem) -> tuple[list[Impulse], list[str]]:
 
 
 def _searches(problem: ContactProblem, approach: Sign) -> list[Callable[[], Iterable[Impulse]]]:
-    if problem.shape is not None:
+    if problem.section_map is not None:
         return [partial(_disc, problem, approach)]
     if not problem.vertices:
         return [partial(_frictionless, problem)] if approach is Sign.NEGATIVE else []
@@ -119,7 +119,7 @@ def _frictionless(problem: ContactProblem) -> list[Impulse]:
 
 def _disc(problem: ContactProblem, approach: Sign) -> Iterator[Impulse]:
     G, v = problem.normalised
-    E = problem.shape
+    E = problem.section_map
     assert E is not None
     stick, border = _sticking(G, v), Sign.NEGATIVE
     if _sign(stick[0], "the sign of the sticking impulse") is Sign.POSITIVE:

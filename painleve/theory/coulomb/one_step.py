@@ -169,7 +169,7 @@ def _residual(problem: ContactProblem, impulse: np.ndarray) -> float:
 
 def _least_product(problem: ContactProblem, u_t: np.ndarray) -> float:
     """The least s.u_t over the section."""
-    if problem.shape is not None:
-        E = _floats(problem.shape).reshape(2, 2)
+    if problem.section_map is not None:
+        E = _floats(problem.section_map).reshape(2, 2)
         return -float(np.linalg.norm(E.T @ u_t))
     return min((float(_floats(V) @ u_t) for V in problem.vertices), default=0.0)

@@ -32,7 +32,7 @@ class ContactProblem:
     `contact_velocity` = (v_n, v_t) are in physical tangents; `responses` = M^-1 W (d x (1 + k)).
 
     The section is a polygon or a segment with the `vertices` (counterclockwise), or s = E sigma, |sigma| <= 1, with
-    `shape` = E; neither where there is no friction.
+    `section_map` = E; neither where there is no friction.
     """
 
     scene: Scene
@@ -43,12 +43,12 @@ class ContactProblem:
     contact_velocity: sp.ImmutableMatrix
     responses: sp.ImmutableMatrix
     vertices: tuple[sp.ImmutableMatrix, ...]
-    shape: sp.ImmutableMatrix | None
+    section_map: sp.ImmutableMatrix | None
 
     @property
     def normalised(self) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
         """G and (v_n, v_t) in tangents for which a disc or an ellipse is the unit disc."""
-        change = sp.diag(1, self.shape)
+        change = sp.diag(1, self.section_map)
         G, v = change.T * self.delassus * change, change.T * self.contact_velocity
         return sp.ImmutableMatrix(G.applyfunc(recognised)), sp.ImmutableMatrix(v.applyfunc(recognised))
 
@@ -121,7 +121,7 @@ def _evaluate(scene: Scene, point: Mapping[sp.Symbol, sp.Expr], v: sp.ImmutableM
             f"scene {scene.name}: the normal and the tangents are not independent at this q (H3); "
             "choose another configuration"
         )
-    vertices, shape = _section(scene, exact)
+    vertices, section_map = _section(scene, exact)
     return ContactProblem(
         scene=scene,
         velocity=v,
@@ -131,7 +131,7 @@ def _evaluate(scene: Scene, point: Mapping[sp.Symbol, sp.Expr], v: sp.ImmutableM
         contact_velocity=(W.T * v).applyfunc(recognised),
         responses=Y,
         vertices=vertices,
-        shape=shape,
+        section_map=section_map,
     )
 
 
@@ -140,7 +140,7 @@ def _positive(minor: sp.MatrixBase) -> bool:
 
 
 def _section(scene: Scene, exact: Exact) -> tuple[Points, sp.ImmutableMatrix | None]:
-    """Vertices or shape; neither for the section {0}, which is no friction."""
+    """Vertices or the map E; neither for the section {0}, which is no friction."""
     where = f"scene {scene.name}"
     for condition in scene.contact.section.conditions:
         value = exact(sp.Matrix([condition.expression]))[0]

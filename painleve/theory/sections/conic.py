@@ -67,15 +67,15 @@ class ConicTheory:
         return a**2 - norm(E.T * scene.contact.tangents.T * adjugate * d.normal) ** 2
 
     def exact_section(self, where: str, exact: Exact) -> tuple[Points, sp.ImmutableMatrix | None]:
-        shape = exact(self.section.map)
-        if shape.is_zero_matrix:
+        section_map = exact(self.section.map)
+        if section_map.is_zero_matrix:
             return (), None
-        if exact_sign(shape.det()).sign is not Sign.POSITIVE:
+        if exact_sign(section_map.det()).sign is not Sign.POSITIVE:
             raise InputError(
                 f"{where}: the ellipse of friction has a semi-axis of length zero at this q; "
                 "give friction along a line as a segment"
             )
-        return (), shape
+        return (), section_map
 
     def spanning(self) -> sp.MatrixBase:
         return sp.Matrix(self.section.map)

@@ -1,7 +1,7 @@
 """The sets whose distances are measured: finite sets, segments, and samples of sets that are larger.
 
 All of them live in R^d with the Euclidean norm; coordinates are in the units of whoever made them. Arrays are copied
-to float64 and made read-only, so that a shape cannot change after a distance was measured from it.
+to float64 and made read-only, so that a set cannot change after a distance was measured from it.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from painleve.errors import InputError
 
-__all__ = ["LARGEST_COORDINATE", "Cloud", "FloatArray", "LineSegment", "Points", "Shape"]
+__all__ = ["LARGEST_COORDINATE", "Cloud", "FloatArray", "LineSegment", "PointSet", "Points"]
 
 FloatArray = NDArray[np.float64]
 
@@ -83,7 +83,7 @@ class LineSegment:
         return (self.end - self.start) / length if length > 0.0 else np.zeros_like(self.start)
 
 
-Shape = Points | LineSegment | Cloud
+PointSet = Points | LineSegment | Cloud
 
 
 def _members(values: ArrayLike, what: str) -> FloatArray:
