@@ -60,6 +60,12 @@ def test_its_own_references_have_a_target() -> None:
     assert len(referred) > 20
 
 
+def test_the_files_that_it_names_are_there() -> None:
+    named = set(re.findall(r"`((?:[a-z_]+/)+(?:[a-z_0-9]+\.py)?)`", THEORY))
+    assert len(named) > 20
+    assert {name for name in named if not (ROOT / "painleve" / name).exists()} == set()
+
+
 def test_its_formulas_are_closed() -> None:
     prose = re.sub(r"`[^`]*`", "", THEORY)
     displayed = re.findall(r"\$\$(.*?)\$\$", prose, flags=re.DOTALL)
