@@ -81,6 +81,14 @@ def test_fractions_and_times_are_those_of_the_members() -> None:
     assert np.abs(logs - (np.arange(3000) + 0.5) / 3000).max() < 1.95 / math.sqrt(3000)
 
 
+def test_the_median_is_the_time_of_the_middle_member_to_half_a_bin() -> None:
+    for seed in range(40):
+        found = run_ensemble(PARADOX, step=1e-3, count=1 + seed, until=0.1, spread=1.5, seed=seed, keep=True)
+        times = np.sort(found.members.time[found.members.outcome == MemberOutcome.JUMP])
+        assert len(times) > seed / 2
+        assert abs(found.jump_time[1] - times[(len(times) - 1) // 2]) <= found.resolution * (0.5 + 1e-9)
+
+
 def test_initial_states_fill_the_two_balls() -> None:
     start = as_start(PARADOX)
     task = _Task(

@@ -13,7 +13,11 @@ from scipy.integrate import solve_ivp
 
 from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Change, Ending
+from painleve.dynamics.arc import ArcPoint
+from painleve.dynamics.grid import make_grid
 from painleve.dynamics.modes import ContactPoint, closed_modes
+from painleve.dynamics.schemes import load_scheme
+from painleve.dynamics.schemes.event_driven import _EventDrivenRun
 from painleve.dynamics.simulate import simulate
 from painleve.dynamics.start import as_start, make_start
 from painleve.errors import InputError
@@ -230,6 +234,18 @@ def test_a_hop_far_shorter_than_a_step_lands_where_the_parabola_does() -> None:
     assert jump.time == pytest.approx(2 * 1e-9 / 10, rel=1e-6)
     assert found.u[-1, 0] == pytest.approx(1 - 0.25 * 5 * 0.2, rel=1e-8)
     assert found.q[-1, 1] == pytest.approx(0.0, abs=1e-15)
+
+
+def test_a_tip_that_left_the_floor_below_its_level_lands_where_it_left_it() -> None:
+    """Arcs of contact drift: where one ends with g > 0, no root of g tells of the landing."""
+    start = make_start(block(), q={"x": 0, "y": 0}, u={"x": 1, "y": 1}, parameters={"weight": 10, "mu": "1/4"})
+    depth, options = 1e-6, load_scheme("event_driven").settings(0.0, None)
+    run = _EventDrivenRun(start, make_grid(0.0, 0.01, 0.5), options, lambda covered: None)
+    run.place = ArcPoint(0.0, np.array([0.0, -depth, 1.0, 1.0, 0.0, 0.0]))
+    found = run.go()
+    (jump,) = found.jumps
+    assert jump.time == pytest.approx(0.2, rel=1e-9)
+    assert found.contact_quantities()["g"].max() == pytest.approx(depth, rel=1e-9)
 
 
 def test_a_rod_falls_hits_and_slides_in_closed_form() -> None:
