@@ -47,7 +47,7 @@ def position_of(body: str, point: Vector, pose: Pose, algebra: Algebra) -> Vecto
 def _arms(body: str, point: Vector, pose: Pose, algebra: Algebra) -> tuple[dict[int, Vector], Vector]:
     """The vector from the anchor of each joint below the point to it, and the point itself in the world."""
     frame = pose.frames[body]
-    arm = algebra.add(frame.origin, algebra.apply(frame.axes, point))
+    arm = algebra.apply(pose.axes(frame.hinge), algebra.vector(frame.point(point)))
     arms: dict[int, Vector] = {}
     for k in pose.chain(frame.hinge):
         arms[k] = arm

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import sympy as sp
 
 from painleve.mechanics.tree.kinematics import Pose
-from painleve.mechanics.tree.model import ZERO, Body, Joint, Mechanism, Vector
-from painleve.mechanics.tree.vectors import Algebra, Matrix3
+from painleve.mechanics.tree.model import ZERO, Joint, Mechanism, Vector
+from painleve.mechanics.tree.vectors import Algebra, Matrix3, rows_of, transposed
 
 __all__ = ["force_of", "inertia_of"]
 
@@ -31,9 +31,11 @@ def inertia_of(mechanism: Mechanism, pose: Pose, algebra: Algebra) -> sp.Immutab
     n = len(pose.hinges)
     composite = _carried(mechanism, pose, algebra)
     for k in range(n - 1, 0, -1):
-        parent = pose.hinges[k].parent
+        hinge, parent = pose.hinges[k], pose.hinges[k].parent
         if parent >= 0:
-            composite[parent] = _joined(composite[parent], _moved(composite[k], pose.hinges[k].arm, algebra), algebra)
+            composite[parent] = _joined(
+                composite[parent], _moved(composite[k], hinge.arm, hinge.place, algebra), algebra
+            )
     M = sp.zeros(n, n)
     for k, hinge in enumerate(pose.hinges):
         body = composite[k]
@@ -71,26 +73,36 @@ def _applied(joint: Joint) -> sp.Expr:
 
 
 def _carried(mechanism: Mechanism, pose: Pose, algebra: Algebra) -> list[_Rigid]:
-    """What each joint's own bodies weigh, without those behind the next joint."""
-    none = (ZERO, ZERO, ZERO)
-    found = [_Rigid(sp.Integer(0), ZERO, none) for _ in pose.hinges]
+    """What each joint's own bodies weigh, without those behind the next joint: summed in the joint's frame, where they
+    are numbers, and turned into the world's axes once."""
+    return [
+        _turned(own, hinge.axes, algebra)
+        for own, hinge in zip(_own(mechanism, pose, algebra), pose.hinges, strict=True)
+    ]
+
+
+def _own(mechanism: Mechanism, pose: Pose, algebra: Algebra) -> list[_Rigid]:
+    found = [_Rigid(sp.Integer(0), ZERO, (ZERO, ZERO, ZERO)) for _ in pose.hinges]
     for body in mechanism.bodies:
         frame = pose.frames[body.name]
         if frame.hinge >= 0:
-            centre = algebra.add(frame.origin, algebra.apply(frame.axes, body.centre))
-            found[frame.hinge] = _joined(found[frame.hinge], _about(body, frame.axes, centre, algebra), algebra)
+            turned = rows_of(sp.ImmutableMatrix(frame.axes * body.inertia * frame.axes.T))
+            centre = frame.point(body.centre)
+            placed = _moved(_Rigid(body.mass, ZERO, turned), centre, centre, algebra)
+            found[frame.hinge] = _joined(found[frame.hinge], placed, algebra)
     return found
 
 
-def _about(body: Body, axes: Matrix3, centre: Vector, algebra: Algebra) -> _Rigid:
-    turned = algebra.product(axes, algebra.product(_rows(body.inertia), _transposed(axes)))
-    return _moved(_Rigid(body.mass, ZERO, turned), centre, algebra)
+def _turned(body: _Rigid, axes: Matrix3, algebra: Algebra) -> _Rigid:
+    second = algebra.product(axes, algebra.product(body.second, transposed(axes)))
+    return _Rigid(body.mass, algebra.apply(axes, body.first), second)
 
 
-def _moved(body: _Rigid, arm: Vector, algebra: Algebra) -> _Rigid:
-    """The same body about a point from which its old one is at `arm`."""
+def _moved(body: _Rigid, arm: Vector, place: Vector, algebra: Algebra) -> _Rigid:
+    """The same body about a point from which its old one is at `arm`; `place` is that arm in a frame in which its
+    length is easier to see."""
     h, m = body.first, body.mass
-    twice = algebra.tape.name(2 * algebra.dot(arm, h) + m * algebra.dot(arm, arm))
+    twice = algebra.tape.name(2 * algebra.dot(arm, h) + m * algebra.dot(place, place))
     shift = [
         [(twice if i == j else 0) - arm[i] * h[j] - h[i] * arm[j] - m * arm[i] * arm[j] for j in range(3)]
         for i in range(3)
@@ -146,13 +158,3 @@ def _wrench(body: _Rigid, motion: _Motion, algebra: Algebra) -> tuple[Vector, Ve
         algebra.cross(body.first, motion.linear),
     )
     return force, moment
-
-
-def _rows(matrix: sp.ImmutableMatrix) -> Matrix3:
-    x, y, z = (tuple(matrix.row(i)) for i in range(3))
-    return x, y, z
-
-
-def _transposed(matrix: Matrix3) -> Matrix3:
-    x, y, z = zip(*matrix, strict=True)
-    return x, y, z

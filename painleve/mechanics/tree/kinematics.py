@@ -1,7 +1,9 @@
-"""Where joints and bodies are: relative vectors in the world's axes, as names on a tape.
+"""Where joints and bodies are: frames that move with the joints, and relative vectors in the world's axes.
 
-Every vector runs from one joint to the next and so depends on what lies between them alone: a base that slides along
-the floor does not enter M, and coordinates that the law does not depend on drop out by themselves.
+Every joint carries a frame that stands parallel to the world's where all joints are at their reference. In it its own
+bodies, and the anchors of the joints that it carries, are at rest: numbers. Only what runs from one anchor to the next
+is turned into the world's axes, so M does not depend on where a base that slides along the floor has got to, and
+coordinates on which the law does not depend drop out by themselves.
 """
 
 from __future__ import annotations
@@ -11,31 +13,24 @@ from dataclasses import dataclass
 import sympy as sp
 
 from painleve.mechanics.tree.model import UPRIGHT, ZERO, Body, Joint, Mechanism, Vector
-from painleve.mechanics.tree.vectors import Algebra, Matrix3
+from painleve.mechanics.tree.vectors import Algebra, Matrix3, rows_of
 
-__all__ = ["Frame", "Hinge", "Orientation", "Pose", "place"]
+__all__ = ["Frame", "Hinge", "Pose", "place"]
 
-
-@dataclass(frozen=True, eq=False)
-class Orientation:
-    """The rotation `start` followed by a turn about `axis`, an axis of numbers in the frame of `start`, by `angle`.
-
-    Turns about one axis one after the other add their angles: a planar chain needs one sine and cosine a link.
-    """
-
-    start: Matrix3
-    axis: Vector | None
-    angle: sp.Expr
+WORLD = rows_of(UPRIGHT)
 
 
 @dataclass(frozen=True, eq=False)
 class Hinge:
-    """A joint in place: its parent's index (-1: the world), the vector from that one's anchor to its own, its axis."""
+    """A joint in place: its parent's index (-1: the world), where its anchor is in its parent's frame, and in the
+    world's axes that arm, the axis of the joint and the axes of the frame that moves with it."""
 
     joint: Joint
     parent: int
+    place: Vector
     arm: Vector
     axis: Vector
+    axes: Matrix3
 
     @property
     def revolute(self) -> bool:
@@ -44,11 +39,15 @@ class Hinge:
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """A body's frame: the joint that carries it, the vector from that joint's anchor to its origin, its axes."""
+    """A body at rest in the frame of the joint that carries it (-1: the world): its origin and its axes there."""
 
     hinge: int
     origin: Vector
-    axes: Matrix3
+    axes: sp.ImmutableMatrix
+
+    def point(self, local: Vector) -> Vector:
+        """A body's point in the joint's frame."""
+        return _plus(self.origin, _turned(self.axes, local))
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +56,9 @@ class Pose:
 
     hinges: tuple[Hinge, ...]
     frames: dict[str, Frame]
+
+    def axes(self, hinge: int) -> Matrix3:
+        return self.hinges[hinge].axes if hinge >= 0 else WORLD
 
     def chain(self, hinge: int) -> list[int]:
         """From that joint down to the base."""
@@ -67,65 +69,75 @@ class Pose:
         return found
 
 
+@dataclass(frozen=True, eq=False)
+class _Turn:
+    """The axes `start`, turned about the axis `about` of that frame by `angle`.
+
+    Turns about one axis one after the other add their angles: a planar chain needs one sine and cosine a link.
+    """
+
+    start: Matrix3
+    about: Vector | None
+    angle: sp.Expr
+
+
 def place(mechanism: Mechanism, algebra: Algebra) -> Pose:
     """The pose as a function of the joints' coordinates."""
     hinges: list[Hinge] = []
+    turns: list[_Turn] = []
     frames: dict[str, Frame] = {}
-    turned: dict[str, Orientation] = {"": Orientation(_constant(UPRIGHT), None, sp.Integer(0))}
     for body in mechanism.bodies:
-        frames[body.name], turned[body.name] = _place_body(body, frames, turned[body.parent], hinges, algebra)
+        parent = frames[body.parent] if body.parent else Frame(-1, ZERO, UPRIGHT)
+        frame = Frame(parent.hinge, parent.point(body.position), sp.ImmutableMatrix(parent.axes * body.rotation))
+        for joint in body.joints:
+            frame = _add_joint(joint, body, frame, hinges, turns, algebra)
+        frames[body.name] = frame
     return Pose(tuple(hinges), frames)
 
 
-def _place_body(
-    body: Body, frames: dict[str, Frame], orientation: Orientation, hinges: list[Hinge], algebra: Algebra
-) -> tuple[Frame, Orientation]:
-    hinge, origin, axes = -1, ZERO, _axes(orientation, algebra)
-    if body.parent:
-        parent = frames[body.parent]
-        hinge, origin, axes = parent.hinge, parent.origin, parent.axes
-    origin = algebra.add(origin, algebra.apply(axes, body.position))
-    if body.rotation != UPRIGHT:
-        orientation = Orientation(algebra.product(axes, _constant(body.rotation)), None, sp.Integer(0))
-        axes = orientation.start
-    for joint in body.joints:
-        anchor = algebra.add(origin, algebra.apply(axes, joint.anchor))
-        unit = _unit(joint.axis)
-        direction = algebra.apply(axes, unit)
-        travel = joint.symbol - joint.reference
-        if joint.kind == "prismatic":
-            anchor = algebra.add(anchor, algebra.scale(algebra.tape.name(travel), direction))
-        else:
-            orientation = _turn(orientation, unit, travel, axes)
-            axes = _axes(orientation, algebra)
-        hinges.append(Hinge(joint, hinge, anchor, direction))
-        hinge = len(hinges) - 1
-        origin = algebra.scale(sp.Integer(-1), algebra.apply(axes, joint.anchor))
-    return Frame(hinge, origin, axes), orientation
+def _add_joint(
+    joint: Joint, body: Body, frame: Frame, hinges: list[Hinge], turns: list[_Turn], algebra: Algebra
+) -> Frame:
+    """The joint's hinge is added, and the body's frame in the frame of that joint given back."""
+    below = turns[frame.hinge] if frame.hinge >= 0 else _Turn(WORLD, None, sp.Integer(0))
+    axes = hinges[frame.hinge].axes if frame.hinge >= 0 else WORLD
+    lever, axis = _turned(frame.axes, joint.anchor), _unit(_turned(frame.axes, joint.axis))
+    anchor, travel = _plus(frame.origin, lever), joint.symbol - joint.reference
+    direction = algebra.apply(axes, axis)
+    if joint.kind == "prismatic":
+        anchor = _plus(anchor, tuple(travel * x for x in axis))
+        turn = below
+    else:
+        turn = _turned_further(below, axis, travel, axes)
+        axes = (
+            turn.start if turn.about is None else algebra.product(turn.start, algebra.rotation(turn.about, turn.angle))
+        )
+    arm = algebra.apply(hinges[frame.hinge].axes if frame.hinge >= 0 else WORLD, algebra.vector(anchor))
+    hinges.append(Hinge(joint, frame.hinge, anchor, arm, direction, axes))
+    turns.append(turn)
+    return Frame(len(hinges) - 1, tuple(-x for x in lever), frame.axes)
 
 
-def _turn(orientation: Orientation, axis: Vector, angle: sp.Expr, axes: Matrix3) -> Orientation:
-    if orientation.axis is None:
-        return Orientation(orientation.start, axis, angle)
+def _turned_further(turn: _Turn, axis: Vector, angle: sp.Expr, axes: Matrix3) -> _Turn:
+    if turn.about is None:
+        return _Turn(turn.start, axis, angle)
     for sign in (1, -1):
-        if all(x == sign * y for x, y in zip(axis, orientation.axis, strict=True)):
-            return Orientation(orientation.start, orientation.axis, orientation.angle + sign * angle)
-    return Orientation(axes, axis, angle)
+        if all(x == sign * y for x, y in zip(axis, turn.about, strict=True)):
+            return _Turn(turn.start, turn.about, turn.angle + sign * angle)
+    return _Turn(axes, axis, angle)
 
 
-def _axes(orientation: Orientation, algebra: Algebra) -> Matrix3:
-    if orientation.axis is None:
-        return orientation.start
-    turn = algebra.rotation(orientation.axis, orientation.angle)
-    return algebra.product(orientation.start, turn)
+def _turned(matrix: sp.ImmutableMatrix, v: Vector) -> Vector:
+    x, y, z = matrix * sp.Matrix(v)
+    return x, y, z
+
+
+def _plus(v: Vector, w: Vector) -> Vector:
+    x, y, z = (a + b for a, b in zip(v, w, strict=True))
+    return x, y, z
 
 
 def _unit(axis: Vector) -> Vector:
     length = sp.sqrt(sp.Add(*(x**2 for x in axis)))
     x, y, z = (e / length for e in axis)
-    return x, y, z
-
-
-def _constant(matrix: sp.ImmutableMatrix) -> Matrix3:
-    x, y, z = (tuple(matrix.row(i)) for i in range(3))
     return x, y, z

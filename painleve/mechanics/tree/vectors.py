@@ -9,7 +9,7 @@ import sympy as sp
 from painleve.exact.tape import TapeBuilder
 from painleve.mechanics.tree.model import Vector
 
-__all__ = ["Algebra", "Matrix3"]
+__all__ = ["Algebra", "Matrix3", "rows_of", "transposed"]
 
 Matrix3 = tuple[Vector, Vector, Vector]
 
@@ -59,3 +59,13 @@ class Algebra:
             [axis[i] * axis[j] * (1 - c) + (c if i == j else 0) + s * skew[i][j] for j in range(3)] for i in range(3)
         ]
         return self.matrix([[sp.expand(e) for e in row] for row in entries])
+
+
+def rows_of(matrix: sp.ImmutableMatrix) -> Matrix3:
+    x, y, z = (tuple(matrix.row(i)) for i in range(3))
+    return x, y, z
+
+
+def transposed(matrix: Matrix3) -> Matrix3:
+    x, y, z = zip(*matrix, strict=True)
+    return x, y, z
