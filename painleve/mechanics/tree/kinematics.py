@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from painleve.mechanics.tree.model import UPRIGHT, ZERO, Body, Joint, Mechanism, Vector
-from painleve.mechanics.tree.vectors import Algebra, Matrix3, rows_of
+from painleve.mechanics.tree.model import UPRIGHT, ZERO, Joint, Mechanism, Vector
+from painleve.mechanics.tree.vectors import Algebra, Matrix3, rotation_about, rows_of
 
 __all__ = ["Frame", "Hinge", "Pose", "place"]
 
@@ -90,14 +90,15 @@ def place(mechanism: Mechanism, algebra: Algebra) -> Pose:
         parent = frames[body.parent] if body.parent else Frame(-1, ZERO, UPRIGHT)
         frame = Frame(parent.hinge, parent.point(body.position), sp.ImmutableMatrix(parent.axes * body.rotation))
         for joint in body.joints:
-            frame = _add_joint(joint, body, frame, hinges, turns, algebra)
+            if joint.locked is not None:
+                frame = _locked(joint, frame, joint.locked)
+            else:
+                frame = _add_joint(joint, frame, hinges, turns, algebra)
         frames[body.name] = frame
     return Pose(tuple(hinges), frames)
 
 
-def _add_joint(
-    joint: Joint, body: Body, frame: Frame, hinges: list[Hinge], turns: list[_Turn], algebra: Algebra
-) -> Frame:
+def _add_joint(joint: Joint, frame: Frame, hinges: list[Hinge], turns: list[_Turn], algebra: Algebra) -> Frame:
     """The joint's hinge is added, and the body's frame in the frame of that joint given back."""
     below = turns[frame.hinge] if frame.hinge >= 0 else _Turn(WORLD, None, sp.Integer(0))
     axes = hinges[frame.hinge].axes if frame.hinge >= 0 else WORLD
@@ -116,6 +117,17 @@ def _add_joint(
     hinges.append(Hinge(joint, frame.hinge, anchor, arm, direction, axes))
     turns.append(turn)
     return Frame(len(hinges) - 1, tuple(-x for x in lever), frame.axes)
+
+
+def _locked(joint: Joint, frame: Frame, value: sp.Expr) -> Frame:
+    """The body's frame, moved as far as the joint is locked."""
+    travel, axis = value - joint.reference, _unit(joint.axis)
+    if joint.kind == "prismatic":
+        return Frame(frame.hinge, frame.point(tuple(travel * x for x in axis)), frame.axes)
+    turn = rotation_about(axis, travel)
+    anchor = frame.point(joint.anchor)
+    axes = sp.ImmutableMatrix(frame.axes * turn)
+    return Frame(frame.hinge, _plus(anchor, tuple(-x for x in _turned(axes, joint.anchor))), axes)
 
 
 def _turned_further(turn: _Turn, axis: Vector, angle: sp.Expr, axes: Matrix3) -> _Turn:

@@ -13,9 +13,10 @@ from typing import Literal
 
 import sympy as sp
 
-__all__ = ["Body", "Joint", "Mechanism", "Plane", "TouchingPoint", "Vector"]
+__all__ = ["Body", "Joint", "JointKind", "Mechanism", "Plane", "TouchingPoint", "Vector"]
 
 Vector = tuple[sp.Expr, sp.Expr, sp.Expr]
+JointKind = Literal["revolute", "prismatic"]
 
 ZERO: Vector = (sp.Integer(0), sp.Integer(0), sp.Integer(0))
 ALONG_X: Vector = (sp.Integer(1), sp.Integer(0), sp.Integer(0))
@@ -32,10 +33,11 @@ class Joint:
     coordinate at which the joint does nothing. `force` is what acts along the coordinate (N m or N) besides damping,
     -damping * velocity, and the spring, -stiffness * (q - rest): an expression of t, coordinates and velocities.
     `armature` is added to the diagonal of M. `limits` are for scans and pictures: no contact of the joint is modelled.
+    A joint that is `locked` at a value is no coordinate.
     """
 
     name: str
-    kind: Literal["revolute", "prismatic"]
+    kind: JointKind
     axis: Vector
     anchor: Vector = ZERO
     reference: sp.Expr = sp.S.Zero
@@ -45,6 +47,7 @@ class Joint:
     rest: sp.Expr = sp.S.Zero
     force: sp.Expr = sp.S.Zero
     limits: tuple[sp.Expr, sp.Expr] | None = None
+    locked: sp.Expr | None = None
     sentence: str = ""
 
     @property
@@ -98,7 +101,8 @@ class Mechanism:
 
     @property
     def joints(self) -> tuple[Joint, ...]:
-        return tuple(joint for body in self.bodies for joint in body.joints)
+        """Those that are coordinates, in their order."""
+        return tuple(joint for body in self.bodies for joint in body.joints if joint.locked is None)
 
     @property
     def by_name(self) -> Mapping[str, Body]:

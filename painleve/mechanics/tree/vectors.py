@@ -9,7 +9,7 @@ import sympy as sp
 from painleve.exact.tape import TapeBuilder
 from painleve.mechanics.tree.model import Vector
 
-__all__ = ["Algebra", "Matrix3", "rows_of", "transposed"]
+__all__ = ["Algebra", "Matrix3", "rotation_about", "rows_of", "transposed"]
 
 Matrix3 = tuple[Vector, Vector, Vector]
 
@@ -51,14 +51,22 @@ class Algebra:
         return self.matrix([[sp.Add(*(m[i][j] for m in matrices)) for j in range(3)] for i in range(3)])
 
     def rotation(self, axis: Vector, angle: sp.Expr) -> Matrix3:
-        """About a unit axis of numbers (Rodrigues' formula)."""
+        """About a unit axis of numbers."""
         c, s = self.tape.name(sp.cos(angle)), self.tape.name(sp.sin(angle))
-        x, y, z = axis
-        skew = ((0, -z, y), (z, 0, -x), (-y, x, 0))
-        entries = [
-            [axis[i] * axis[j] * (1 - c) + (c if i == j else 0) + s * skew[i][j] for j in range(3)] for i in range(3)
-        ]
-        return self.matrix([[sp.expand(e) for e in row] for row in entries])
+        return self.matrix(_rodrigues(axis, c, s).tolist())
+
+
+def rotation_about(axis: Vector, angle: sp.Expr) -> sp.ImmutableMatrix:
+    """The rotation about a unit axis."""
+    return _rodrigues(axis, sp.cos(angle), sp.sin(angle))
+
+
+def _rodrigues(axis: Vector, c: sp.Expr, s: sp.Expr) -> sp.ImmutableMatrix:
+    """Rodrigues' formula for a rotation by the angle with that cosine and sine."""
+    x, y, z = axis
+    skew = sp.Matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    column = sp.Matrix(axis)
+    return sp.ImmutableMatrix((column * column.T * (1 - c) + c * sp.eye(3) + s * skew).applyfunc(sp.expand))
 
 
 def rows_of(matrix: sp.ImmutableMatrix) -> Matrix3:

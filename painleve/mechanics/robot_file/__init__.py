@@ -1,0 +1,1 @@
+"""Robots' files, MJCF and URDF, read through the `mujoco` package where that is installed."""
