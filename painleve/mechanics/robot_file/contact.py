@@ -11,6 +11,7 @@ import numpy as np
 import sympy as sp
 
 from painleve.errors import InputError, nearest
+from painleve.exact.parse import exact_number
 from painleve.mechanics.robot_file.read import Robot, exact, exact_vector, rotation_of
 from painleve.mechanics.tree.model import ALONG_X, ALONG_Y, ALONG_Z, ZERO, Plane, TouchingPoint, Vector
 
@@ -52,8 +53,6 @@ def choose_contact(
     if own is not None:
         touching = _of_geom(model, path, robot.bodies[index], own, end)
     elif point is not None:
-        from painleve.exact.parse import exact_number
-
         x, y, z = (exact_number(text, where="--point") for text in point)
         touching = TouchingPoint(body=robot.bodies[index], point=(x, y, z))
         notes.append("friction: the plane's own, for a point has none")

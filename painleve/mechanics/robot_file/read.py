@@ -16,8 +16,9 @@ from painleve.errors import InputError, nearest
 from painleve.exact.parse import exact_number
 from painleve.mechanics.robot_file.xml_text import root_of_file
 from painleve.mechanics.tree.model import ALONG_X, ALONG_Y, ALONG_Z, ZERO, Body, Joint, JointKind, Mechanism, Vector
+from painleve.mechanics.tree.vectors import quaternion_rotation
 
-__all__ = ["Robot", "exact", "exact_vector", "read_robot"]
+__all__ = ["Robot", "exact", "exact_vector", "read_robot", "rotation_of"]
 
 FREE, BALL, SLIDE, HINGE = range(4)  # MuJoCo's mjtJoint
 CONNECT, WELD = 0, 1  # of mjtEq: what closes a loop
@@ -146,12 +147,7 @@ def _is_free(model: Any, j: int) -> bool:
 def rotation_of(quaternion: Any) -> sp.ImmutableMatrix:
     """The exact rotation of a quaternion of decimals, whatever its length."""
     w, x, y, z = (exact(c) for c in quaternion)
-    rows = [
-        [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
-    ]
-    return sp.ImmutableMatrix(rows) / (w * w + x * x + y * y + z * z)
+    return quaternion_rotation(w, (x, y, z))
 
 
 def _inertia(principal: Any, quaternion: Any) -> sp.ImmutableMatrix:

@@ -71,6 +71,11 @@ class Field:
             raise self.refuse(f"{', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing")
         return {name: self._inside(name, given[name]) for name in given}
 
+    def some(self, names: Collection[str]) -> dict[str, Field]:
+        """Those of the named fields that the table has, whatever else it has."""
+        given = self._mapping()
+        return {name: self._inside(name, given[name]) for name in names if name in given}
+
     def one_of(self, names: Collection[str], fields: Mapping[str, Field]) -> Field:
         """The only one of the named fields of this table."""
         given = [name for name in names if name in fields]

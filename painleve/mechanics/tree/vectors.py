@@ -9,7 +9,7 @@ import sympy as sp
 from painleve.exact.tape import TapeBuilder
 from painleve.mechanics.tree.model import Vector
 
-__all__ = ["Algebra", "Matrix3", "rotation_about", "rows_of", "transposed"]
+__all__ = ["Algebra", "Matrix3", "quaternion_rotation", "rotation_about", "rows_of", "transposed"]
 
 Matrix3 = tuple[Vector, Vector, Vector]
 
@@ -59,6 +59,17 @@ class Algebra:
 def rotation_about(axis: Vector, angle: sp.Expr) -> sp.ImmutableMatrix:
     """The rotation about a unit axis."""
     return _rodrigues(axis, sp.cos(angle), sp.sin(angle))
+
+
+def quaternion_rotation(w: sp.Expr, v: Vector) -> sp.ImmutableMatrix:
+    """The rotation of the quaternion w + v, of any length but zero."""
+    x, y, z = v
+    rows = [
+        [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
+    ]
+    return sp.ImmutableMatrix(rows) / (w * w + x * x + y * y + z * z)
 
 
 def _rodrigues(axis: Vector, c: sp.Expr, s: sp.Expr) -> sp.ImmutableMatrix:
