@@ -110,8 +110,7 @@ def _of_geom(model: Any, path: Path, body: str, geom: int, end: int | None) -> T
     if kind == CAPSULE:
         along = rotation_of(model.geom_quat[geom])[:, 2] * exact(model.geom_size[geom][1])
         centre += along if end == 1 else -along
-    x, y, z = centre
-    return TouchingPoint(body=body, point=(x, y, z), radius=exact(model.geom_size[geom][0]))
+    return TouchingPoint(body=body, point=exact_vector(centre), radius=exact(model.geom_size[geom][0]))
 
 
 def _plane(model: Any, geom: int | None) -> Plane:

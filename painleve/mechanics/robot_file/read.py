@@ -23,6 +23,7 @@ __all__ = ["Robot", "exact", "exact_vector", "read_robot", "rotation_of"]
 FREE, BALL, SLIDE, HINGE = range(4)  # MuJoCo's mjtJoint
 CONNECT, WELD = 0, 1  # of mjtEq: what closes a loop
 MOST_BODIES, MOST_JOINTS = 200, 64
+ROUNDING = 1e-14
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,9 +152,11 @@ def rotation_of(quaternion: Any) -> sp.ImmutableMatrix:
 
 
 def _inertia(principal: Any, quaternion: Any) -> sp.ImmutableMatrix:
+    """In the body's axes; products of inertia that are rounding beside the principal values are zero."""
     turn = np.array(rotation_of(quaternion).tolist(), dtype=float)
     full = turn @ np.diag(principal) @ turn.T
-    return sp.ImmutableMatrix(3, 3, lambda i, j: exact(full[min(i, j), max(i, j)]) if abs(full[i, j]) > 0.0 else 0)
+    full[np.abs(full) <= ROUNDING * np.max(np.abs(full))] = 0.0
+    return sp.ImmutableMatrix(3, 3, lambda i, j: exact(full[min(i, j), max(i, j)]))
 
 
 def _moving(model: Any, j: int, name: str, locked: sp.Expr | None, kind: JointKind) -> list[Joint]:
