@@ -17,7 +17,7 @@ from typing import Any
 import sympy
 from flint import arb, ctx, fmpq, fmpz_poly
 
-__all__ = ["FUNCTIONS", "ball", "make_ball_function", "square"]
+__all__ = ["ball", "make_ball_function"]
 
 _Operation = Callable[..., arb]
 
@@ -105,8 +105,8 @@ class _Program:
             return self._product(expr)
         if expr.is_Pow:
             return self._power(*expr.args)
-        if expr.func in FUNCTIONS:
-            return self._emit(FUNCTIONS[expr.func], *map(self.compile, expr.args))
+        if expr.func in _FUNCTIONS:
+            return self._emit(_FUNCTIONS[expr.func], *map(self.compile, expr.args))
         if expr.func in _FOLDED:
             return self._fold(_FOLDED[expr.func], expr.args)
         return self._constant(_constant(expr))
@@ -154,7 +154,7 @@ class _Program:
     def _whole_power(self, place: int, n: int) -> int:
         if n == 1:
             return place
-        half = self._emit(square, self._whole_power(place, n // 2))
+        half = self._emit(_square, self._whole_power(place, n // 2))
         return half if n % 2 == 0 else self._emit(operator.mul, half, place)
 
 
@@ -168,7 +168,7 @@ def _fraction(expr: sympy.Mul) -> tuple[list[sympy.Expr], list[sympy.Expr]]:
     return numerator, denominator
 
 
-def square(x: arb) -> arb:
+def _square(x: arb) -> arb:
     """Never below zero, and without the excess of x*x, which forgets that both factors are the same number."""
     if x.rel_accuracy_bits() > _NARROW:
         return x * x
@@ -210,7 +210,7 @@ def _polynomial_root(root: sympy.CRootOf) -> arb:
     return ordered[root.index] if root.index < len(ordered) else arb.nan()
 
 
-FUNCTIONS: Mapping[type[sympy.Basic], _Operation] = MappingProxyType(
+_FUNCTIONS: Mapping[type[sympy.Basic], _Operation] = MappingProxyType(
     {
         sympy.sin: arb.sin,
         sympy.cos: arb.cos,

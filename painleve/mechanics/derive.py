@@ -9,6 +9,7 @@ from types import MappingProxyType
 
 import sympy as sp
 
+from painleve.errors import InputError
 from painleve.mechanics.scene import Scene
 
 __all__ = ["Derivation", "derive"]
@@ -60,7 +61,15 @@ class Derivation:
 
 @lru_cache(maxsize=64)
 def derive(scene: Scene) -> Derivation:
-    """The contact quantities of a scene; W^T M^-1 W, gamma and mu_c as in docs/theory.md, section 1."""
+    """The contact quantities of a scene; W^T M^-1 W, gamma and mu_c as in docs/theory.md, section 1.
+
+    Raises InputError for a scene that is written in intermediate results: its closed forms would fill pages.
+    """
+    if scene.definitions.steps:
+        raise InputError(
+            f"scene {scene.name}: the closed forms of its {scene.dimension} coordinates would fill pages, and this "
+            "needs them; `painleve map` and `painleve scan` do without"
+        )
     contact, section = scene.contact, scene.contact.section
     w_n = sp.ImmutableMatrix([-sp.diff(contact.constraint, x) for x in scene.q])
     adjugate, determinant = scene.inertia.adjugate(), scene.inertia.det(method="berkowitz")

@@ -13,8 +13,10 @@ from typing import Literal
 import sympy as sp
 
 from painleve.errors import InputError, nearest
+from painleve.exact.tape import Tape
 from painleve.mechanics.contact import Contact
 from painleve.mechanics.friction import NoFriction, Section
+from painleve.mechanics.tree.model import Tree
 
 __all__ = ["Coordinate", "NamedState", "Outline", "Parameter", "Scene", "StateKey", "make_scene"]
 
@@ -110,8 +112,10 @@ class Scene:
 
     `inertia` is M(q) (d x d); `force` is f(t, q, u) (d x 1), gyroscopic terms included; `contact` is where it touches;
     `placement`, `velocity` and `contact_parameters` say, in terms of the state keys and the parameters, where the
-    natural keys put q, u and those parameters that the contact fixes. `file` and `text` are the name and the text of
-    the file that it was read from, empty for a scene that was not.
+    natural keys put q, u and those parameters that the contact fixes. `definitions` are the named intermediate results
+    that M, f and the contact are written in, none where they stand in closed form. `tree` is the mechanism that they
+    were derived from. `file` and `text` are the name and the text of the file that it was read from, empty for a scene
+    that was not.
     """
 
     name: str
@@ -128,6 +132,8 @@ class Scene:
     contact_parameters: Mapping[str, sp.Expr]
     states: tuple[NamedState, ...] = field(default=())
     outline: Outline | None = None
+    definitions: Tape = field(default_factory=Tape)
+    tree: Tree | None = None
     file: str = ""
     text: str = ""
 

@@ -13,7 +13,7 @@ import sympy as sp
 from painleve.errors import InputError, nearest
 from painleve.exact.parse import exact_number
 from painleve.mechanics.robot_file.read import Robot, exact, exact_vector, rotation_of
-from painleve.mechanics.tree.model import ALONG_X, ALONG_Y, ALONG_Z, ZERO, Plane, TouchingPoint, Vector
+from painleve.mechanics.tree.model import ALONG_X, ALONG_Y, ALONG_Z, ZERO, Plane, TouchingPoint, Tree, Vector
 
 __all__ = ["ChosenContact", "choose_contact"]
 
@@ -23,10 +23,10 @@ FRICTION = 1.0  # MuJoCo's default, of a floor that the file does not have
 
 @dataclass(frozen=True, eq=False)
 class ChosenContact:
-    """A touching point, its plane (with two tangents), and the coefficient of friction of the pair."""
+    """A mechanism's touching point in words and as data, its plane with two tangents, and the friction of the pair."""
 
-    point: TouchingPoint
-    plane: Plane
+    what: str
+    tree: Tree
     friction: sp.Rational
     notes: tuple[str, ...]
 
@@ -50,15 +50,19 @@ def choose_contact(
     notes: list[str] = []
     floor = _plane_index(model, path, plane, notes)
     own = _geom_index(model, path, index, geom) if geom is not None else None
+    what = f"the point ({', '.join(point or ())}) of {robot.bodies[index]}"
     if own is not None:
         touching = _of_geom(model, path, robot.bodies[index], own, end)
+        what = f"geom {geom}{f', end {end},' if end is not None else ''} of {robot.bodies[index]}"
     elif point is not None:
         x, y, z = (exact_number(text, where="--point") for text in point)
         touching = TouchingPoint(body=robot.bodies[index], point=(x, y, z))
         notes.append("friction: the plane's own, for a point has none")
     else:
         raise InputError(f"{path}: say where body {body} touches: --geom NAME or --point X Y Z")
-    return ChosenContact(touching, _plane(model, floor), _friction(model, own, floor), tuple(notes))
+    others = tuple(_others(robot, own, end, floor, notes))
+    tree = Tree(mechanism=robot.mechanism, point=touching, plane=_plane(model, floor), others=others)
+    return ChosenContact(what, tree, _friction(model, own, floor), tuple(notes))
 
 
 def _body_index(robot: Robot, path: Path, body: str) -> int:
@@ -100,17 +104,52 @@ def _plane_index(model: Any, path: Path, plane: str | None, notes: list[str]) ->
     return chosen
 
 
+def _others(robot: Robot, own: int | None, end: int | None, floor: int | None, notes: list[str]) -> list[TouchingPoint]:
+    """The other spheres and ends of capsules that the plane stops: a configuration in which one of them is below the
+    plane is not one of the contact asked for."""
+    model = robot.model
+    found: list[TouchingPoint] = []
+    shapeless: list[str] = []
+    for i in range(model.ngeom):
+        body = int(model.geom_bodyid[i])
+        if body not in robot.bodies or floor is None or not _collide(model, i, floor):
+            continue
+        kind = int(model.geom_type[i])
+        if kind == SPHERE and i != own:
+            found.append(_end(model, robot.bodies[body], i, 0))
+        elif kind == CAPSULE:
+            found += [_end(model, robot.bodies[body], i, sign) for sign in (-1, 1) if (i, sign) != (own, _sign(end))]
+        elif kind not in (SPHERE, CAPSULE):
+            shapeless.append(model.geom(i).name or f"geom_{i}")
+    if shapeless:
+        notes.append(f"where the plane stops {', '.join(shapeless)}, which are no spheres and no capsules")
+    return found
+
+
+def _sign(end: int | None) -> int:
+    return 1 if end == 1 else -1
+
+
+def _collide(model: Any, first: int, second: int) -> bool:
+    types, affinities = model.geom_contype, model.geom_conaffinity
+    return bool((types[first] & affinities[second]) | (types[second] & affinities[first]))
+
+
+def _end(model: Any, body: str, geom: int, sign: int) -> TouchingPoint:
+    """The sphere in the middle of a geom (sign 0), or at an end of a capsule."""
+    centre = sp.Matrix(exact_vector(model.geom_pos[geom]))
+    if sign:
+        centre += sign * rotation_of(model.geom_quat[geom])[:, 2] * exact(model.geom_size[geom][1])
+    return TouchingPoint(body=body, point=exact_vector(centre), radius=exact(model.geom_size[geom][0]))
+
+
 def _of_geom(model: Any, path: Path, body: str, geom: int, end: int | None) -> TouchingPoint:
     name, kind = model.geom(geom).name or f"geom_{geom}", int(model.geom_type[geom])
-    centre = sp.Matrix(exact_vector(model.geom_pos[geom]))
     if kind not in (SPHERE, CAPSULE):
         raise InputError(f"{path}: geom {name} is no sphere and no capsule; say where it touches with --point X Y Z")
     if kind == CAPSULE and end not in (0, 1):
         raise InputError(f"{path}: geom {name} is a capsule; say which end touches with --end 0 or --end 1")
-    if kind == CAPSULE:
-        along = rotation_of(model.geom_quat[geom])[:, 2] * exact(model.geom_size[geom][1])
-        centre += along if end == 1 else -along
-    return TouchingPoint(body=body, point=exact_vector(centre), radius=exact(model.geom_size[geom][0]))
+    return _end(model, body, geom, _sign(end) if kind == CAPSULE else 0)
 
 
 def _plane(model: Any, geom: int | None) -> Plane:

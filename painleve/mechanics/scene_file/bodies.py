@@ -20,13 +20,14 @@ from painleve.mechanics.tree.model import (
     Mechanism,
     Plane,
     TouchingPoint,
+    Tree,
     Vector,
 )
 from painleve.mechanics.tree.vectors import quaternion_rotation, rotation_about
 
-__all__ = ["read_mechanism", "read_touching_point"]
+__all__ = ["read_mechanism", "read_tree"]
 
-MOST_BODIES, MOST_JOINTS, MOST_POINTS = 64, 32, 64
+MOST_BODIES, MOST_JOINTS, MOST_OTHERS = 64, 32, 64
 
 Symbols = Mapping[str, sp.Expr]
 _VALUES = ("reference", "damping", "armature", "stiffness", "rest")
@@ -74,13 +75,12 @@ def _joints(body: Field) -> list[Field]:
 
 
 def _body(field: Field, before: list[str], p: Symbols, known: Symbols) -> Body:
-    parts = field.table(("name",), ("parent", "position", "rotation", "mass", "centre", "inertia", "joint", "outline"))
+    parts = field.table(("name",), ("parent", "position", "rotation", "mass", "centre", "inertia", "joint"))
     name = parts["name"].string()
     why = why_no_name(name)
     if why is not None:
         raise parts["name"].refuse(why)
     parent = parts["parent"].choice(("world", *before)) if "parent" in parts else "world"
-    points = parts["outline"].array(MOST_POINTS, what="points") if "outline" in parts else []
     return Body(
         name=name,
         parent="" if parent == "world" else parent,
@@ -90,7 +90,6 @@ def _body(field: Field, before: list[str], p: Symbols, known: Symbols) -> Body:
         mass=parts["mass"].formula(p) if "mass" in parts else sp.Integer(0),
         centre=_vector(parts["centre"], p) if "centre" in parts else ZERO,
         inertia=_inertia(parts["inertia"], p) if "inertia" in parts else sp.ImmutableMatrix.zeros(3),
-        outline=tuple(_vector(point, p) for point in points),
     )
 
 
@@ -114,23 +113,33 @@ def _joint(field: Field, p: Symbols, known: Symbols) -> Joint:
     )
 
 
-def read_touching_point(field: Field, mechanism: Mechanism, p: Symbols, directions: int) -> tuple[TouchingPoint, Plane]:
-    """`body`, `point`, `radius` of a sphere about it, and the plane: the floor z = 0 unless it is given."""
-    parts = field.table(("body", "point"), ("radius", "plane"))
-    point = TouchingPoint(
+def read_tree(field: Field, mechanism: Mechanism, p: Symbols, directions: int) -> Tree:
+    """`body`, `point`, `radius` of a sphere about it; the plane, the floor z = 0 unless it is given; `other` points of
+    the mechanism that the plane stops too."""
+    parts = field.table(("body", "point"), ("radius", "plane", "other"))
+    others = parts["other"].array(MOST_OTHERS, what="points") if "other" in parts else []
+    given = parts["plane"].table((), ("point", "normal", "tangent")) if "plane" in parts else {}
+    normal = _unit(given["normal"], p) if "normal" in given else ALONG_Z
+    tangent = _unit(given["tangent"], p) if "tangent" in given else ALONG_X
+    if sp.expand(sum(x * y for x, y in zip(normal, tangent, strict=True))) != 0:
+        raise field.refuse("the plane's tangent is not orthogonal to its normal")
+    across = sp.Matrix(normal).cross(sp.Matrix(tangent))
+    tangents: tuple[Vector, ...] = (tangent, (across[0], across[1], across[2]))
+    place = _vector(given["point"], p) if "point" in given else ZERO
+    return Tree(
+        mechanism=mechanism,
+        point=_point(parts, mechanism, p),
+        plane=Plane(point=place, normal=normal, tangents=tangents[:directions]),
+        others=tuple(_point(other.table(("body", "point"), ("radius",)), mechanism, p) for other in others),
+    )
+
+
+def _point(parts: Mapping[str, Field], mechanism: Mechanism, p: Symbols) -> TouchingPoint:
+    return TouchingPoint(
         body=parts["body"].choice([body.name for body in mechanism.bodies]),
         point=_vector(parts["point"], p),
         radius=parts["radius"].formula(p) if "radius" in parts else sp.Integer(0),
     )
-    given = parts["plane"].table((), ("point", "normal", "tangent")) if "plane" in parts else {}
-    normal = _unit(given["normal"], p) if "normal" in given else ALONG_Z
-    tangent = _unit(given["tangent"], p) if "tangent" in given else ALONG_X
-    across = sp.Matrix(normal).cross(sp.Matrix(tangent))
-    if sp.expand(sum(x * y for x, y in zip(normal, tangent, strict=True))) != 0:
-        raise field.refuse("the plane's tangent is not orthogonal to its normal")
-    tangents: tuple[Vector, ...] = (tangent, (across[0], across[1], across[2]))
-    place = _vector(given["point"], p) if "point" in given else ZERO
-    return point, Plane(point=place, normal=normal, tangents=tangents[:directions])
 
 
 def _unit(field: Field, p: Symbols) -> Vector:

@@ -11,12 +11,15 @@ import sympy as sp
 
 from painleve.errors import InputError
 from painleve.mechanics.derive import derive
+from painleve.mechanics.friction import NoFriction
 from painleve.mechanics.scene import Coordinate, NamedState, Outline, Parameter, Range, Scene, StateKey, make_scene
+from painleve.mechanics.scene_file.bodies import read_mechanism, read_tree
 from painleve.mechanics.scene_file.document import Document, read_document
 from painleve.mechanics.scene_file.fields import Field
-from painleve.mechanics.scene_file.mechanics import read_contact, read_motion
+from painleve.mechanics.scene_file.mechanics import read_contact, read_motion, read_section
 from painleve.mechanics.scene_file.names import why_no_name, why_no_symbol
 from painleve.mechanics.scene_file.work import TooMuchWork, limited_calls, nodes_of
+from painleve.mechanics.tree.scene import make_tree_scene
 
 __all__ = ["scene_of_text"]
 
@@ -39,6 +42,8 @@ def scene_of_text(name: str, text: str) -> Scene:
     try:
         with limited_calls(MOST_CALLS):
             scene = _scene(document)
+            if scene.definitions.steps:
+                return scene
             derivation = derive(scene)
     except TooMuchWork:
         raise InputError(f"{name}: deriving this scene takes too much algebra; shorten the formulas") from None
@@ -55,6 +60,42 @@ def scene_of_text(name: str, text: str) -> Scene:
 
 def _scene(document: Document) -> Scene:
     top = Field(document=document, path=(), value=document.table)
+    return _tree_scene(top) if "body" in document.table else _formula_scene(top)
+
+
+def _tree_scene(top: Field) -> Scene:
+    """Of a mechanism, by its bodies and joints."""
+    fields = top.table(
+        ("name", "sentence", "body", "contact"),
+        ("source", "parameters", "mechanism", "friction", "states", "contact_parameters"),
+    )
+    name, document = _named(fields["name"], fields["name"].string()), top.document
+    parameters = _parameters(fields.get("parameters"))
+    p = _symbols(parameters)
+    mechanism = read_mechanism(fields.get("mechanism"), fields["body"], p)
+    joints = {joint.name: joint.symbol for joint in mechanism.joints}
+    friction = read_section(fields["friction"], {**joints, **p}) if "friction" in fields else NoFriction()
+    tree = read_tree(fields["contact"], mechanism, p, friction.dimension)
+    parts: dict[str, Any] = {"tree": tree, "friction": friction, "parameters": parameters}
+    if "contact_parameters" in fields:
+        given = fields["contact_parameters"].table((), [x.name for x in parameters])
+        parts["contact_parameters"] = {n: rule.formula({**joints, **p}) for n, rule in given.items()}
+    try:
+        scene = make_tree_scene(
+            name=name,
+            sentence=fields["sentence"].sentence(),
+            source=fields["source"].sentence() if "source" in fields else f"a scene file, {document.name}",
+            **parts,
+        )
+    except InputError as error:
+        raise InputError(f"{document.name}: {error}") from None
+    states = _states(fields.get("states"), scene.coordinates, parameters, scene.keys)
+    return dataclasses.replace(scene, states=states, file=document.name, text=document.text)
+
+
+def _formula_scene(top: Field) -> Scene:
+    """By its kinetic energy and the formulas of its contact."""
+    document = top.document
     fields = top.table(
         ("name", "sentence", "coordinates", "mechanics", "contact"),
         ("source", "parameters", "friction", "keys", *RULES, "states", "outline"),

@@ -12,7 +12,7 @@ from painleve.mechanics.friction import SECTIONS, NoFriction, Section
 from painleve.mechanics.scene_file.fields import Field
 from painleve.mechanics.scene_file.work import terms_of
 
-__all__ = ["read_contact", "read_motion"]
+__all__ = ["read_contact", "read_motion", "read_section"]
 
 MOST_TERMS = 2000  # of an expanded formula
 MOST_DIRECTIONS = max(section.dimension for section in SECTIONS)  # of friction
@@ -107,7 +107,7 @@ def read_contact(field: Field, friction: Field | None, q: Symbols, p: Symbols) -
         raise given.refuse("this does not depend on any coordinate")
     displacements = fields.get("tangential_displacements")
     formulas = [smooth(part, {**q, **p}) for part in _one_or_more(displacements)] if displacements is not None else []
-    section = _section(friction, {**q, **p}) if friction is not None else NoFriction()
+    section = read_section(friction, {**q, **p}) if friction is not None else NoFriction()
     directions = section.dimension
     if len(formulas) != directions:
         kind = f"where friction is a {section.kind}" if directions else "without friction"
@@ -126,7 +126,7 @@ def _one_or_more(field: Field) -> list[Field]:
     return field.array(MOST_DIRECTIONS, what="displacements") if isinstance(field.value, list) else [field]
 
 
-def _section(field: Field, known: Symbols) -> Section:
+def read_section(field: Field, known: Symbols) -> Section:
     """The friction section; its coefficients may depend on q."""
     kinds = {section.kind: section for section in SECTIONS}
     given = field.table(("kind",), dict.fromkeys(name for section in SECTIONS for name in section.fields))

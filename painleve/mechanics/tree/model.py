@@ -13,7 +13,7 @@ from typing import Literal
 
 import sympy as sp
 
-__all__ = ["Body", "Joint", "JointKind", "Mechanism", "Plane", "TouchingPoint", "Vector"]
+__all__ = ["Body", "Joint", "JointKind", "Mechanism", "Plane", "TouchingPoint", "Tree", "Vector"]
 
 Vector = tuple[sp.Expr, sp.Expr, sp.Expr]
 JointKind = Literal["revolute", "prismatic"]
@@ -71,7 +71,6 @@ class Body:
     mass: sp.Expr = sp.S.Zero
     centre: Vector = ZERO
     inertia: sp.ImmutableMatrix = field(default_factory=lambda: sp.ImmutableMatrix.zeros(3))
-    outline: tuple[Vector, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -107,3 +106,13 @@ class Mechanism:
     @property
     def by_name(self) -> Mapping[str, Body]:
         return {body.name: body for body in self.bodies}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Tree:
+    """A mechanism and where it touches; `others` are further points of it that the plane stops too."""
+
+    mechanism: Mechanism
+    point: TouchingPoint
+    plane: Plane
+    others: tuple[TouchingPoint, ...] = ()

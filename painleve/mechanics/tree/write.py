@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import sympy as sp
 
-from painleve.mechanics.tree.model import UPRIGHT, ZERO, Body, Joint, Mechanism, Plane, TouchingPoint, Vector
+from painleve.mechanics.tree.model import UPRIGHT, ZERO, Body, Joint, Mechanism, TouchingPoint, Tree, Vector
 
 __all__ = ["mechanism_text", "number_text", "touching_text"]
 
@@ -54,8 +54,6 @@ def _body_text(body: Body) -> str:
     lines += _vector_line("centre", body.centre)
     if not body.inertia.is_zero_matrix:
         lines.append(f"inertia = {_array(_inertia_entries(body.inertia))}")
-    if body.outline:
-        lines.append(f"outline = [{', '.join(_array(point) for point in body.outline)}]")
     return "\n".join([*lines, *(_joint_text(joint) for joint in body.joints)]) + "\n"
 
 
@@ -95,12 +93,17 @@ def _joint_text(joint: Joint) -> str:
     return "\n".join(lines)
 
 
-def touching_text(point: TouchingPoint, plane: Plane) -> str:
+def touching_text(tree: Tree) -> str:
     """The table [contact]."""
-    lines = ["[contact]", f'body = "{point.body}"', f"point = {_array(point.point)}"]
-    if point.radius != 0:
-        lines.append(f"radius = {number_text(point.radius)}")
+    point, plane = tree.point, tree.plane
+    lines = ["[contact]", *_point_lines(point)]
     entries = [f"{name} = {_array(v)}" for name, v in (("point", plane.point), ("normal", plane.normal)) if v != ZERO]
     entries.append(f"tangent = {_array(plane.tangents[0])}")
     lines.append(f"plane = {{ {', '.join(entries)} }}")
-    return "\n".join(lines) + "\n"
+    others = ["\n".join(["", "[[contact.other]]", *_point_lines(other)]) for other in tree.others]
+    return "\n".join([*lines, *others]) + "\n"
+
+
+def _point_lines(point: TouchingPoint) -> list[str]:
+    lines = [f'body = "{point.body}"', f"point = {_array(point.point)}"]
+    return lines if point.radius == 0 else [*lines, f"radius = {number_text(point.radius)}"]
