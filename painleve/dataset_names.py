@@ -11,7 +11,7 @@ from collections.abc import Hashable, Iterable
 
 from painleve.errors import InputError
 
-__all__ = ["EXACT", "IN_REGIMES", "IN_SWEEPS", "IN_TRAJECTORIES", "hold_to"]
+__all__ = ["EXACT", "IN_FRICTION_MAPS", "IN_REGIMES", "IN_SWEEPS", "IN_TRAJECTORIES", "hold_to"]
 
 EXACT = "_exact"
 """What follows the name of a swept quantity where its values stand as text."""
@@ -36,6 +36,10 @@ IN_SWEEPS = _words(
 )
 # Beside the two state keys that are the axes of a map.
 IN_REGIMES = _words("regime slip_compliance free_acceleration")
+# Beside what varies in a map of friction.
+IN_FRICTION_MAPS = _words(
+    "admitted critical_friction_plus critical_friction_minus gamma_negative_plus gamma_negative_minus"
+)
 
 
 def hold_to(register: frozenset[str], names: Iterable[Hashable], own: Iterable[str]) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from types import MappingProxyType
@@ -18,7 +18,7 @@ from painleve.exact.signs import Sign, exact_sign
 from painleve.mechanics.derive import derive
 from painleve.mechanics.scene import NamedState, Scene
 
-__all__ = ["Number", "State", "make_curve", "make_state", "resolve_parameters"]
+__all__ = ["Number", "State", "make_curve", "make_family", "make_state", "resolve_parameters"]
 
 Number: TypeAlias = str | int | float | Fraction | sp.Expr
 
@@ -122,11 +122,27 @@ def make_curve(
         )
     if along in (keys or {}):
         raise InputError(f"scene {scene.name}: {along} is given, and so cannot vary; leave it out")
+    return make_family(scene, (along,), name, keys=keys, parameters=parameters)
+
+
+def make_family(
+    scene: Scene,
+    free: Collection[str],
+    name: str | None = None,
+    *,
+    keys: Mapping[str, Number] | None = None,
+    parameters: Mapping[str, Number] | None = None,
+) -> dict[sp.Symbol, sp.Expr]:
+    """Coordinates, velocities and parameters in terms of the free names, each in its own symbol.
+
+    A free name is a state key, a single component or a parameter; the rest is as for make_state, and so are the errors.
+    Nothing is checked of the states: the family may leave the domain of the scene.
+    """
     named = scene.state(name) if name is not None else None
-    given = dict(named.keys if named else {}) | dict(keys or {})
-    values, formulas, components = _sort_keys(scene, given, free=along)
+    given = {k: v for k, v in (dict(named.keys if named else {}) | dict(keys or {})).items() if k not in free}
+    values, formulas, components = _sort_keys(scene, given, free)
     chosen = dict(named.parameters if named else {}) | dict(parameters or {})
-    table = resolve_parameters(scene, chosen, None if formulas else values)
+    table = resolve_parameters(scene, chosen, None if formulas else values, free)
     point = values | {p.symbol: table[p.name] for p in scene.parameters}
     for key, formula in formulas.items():
         point[key] = formula.xreplace(point)
@@ -138,15 +154,23 @@ def make_curve(
 
 
 def resolve_parameters(
-    scene: Scene, given: Mapping[str, Number], keys: Mapping[sp.Symbol, sp.Expr] | None = None
+    scene: Scene,
+    given: Mapping[str, Number],
+    keys: Mapping[sp.Symbol, sp.Expr] | None = None,
+    free: Collection[str] = (),
 ) -> dict[str, sp.Expr]:
-    """Exact values of all parameters: given, else fixed by the contact, else the default. Raises InputError."""
+    """Exact values of all parameters: given, else fixed by the contact, else the default; of the free ones, themselves.
+
+    Raises InputError for unknown parameters and values out of range.
+    """
     for name in given:
         scene.parameter(name)
     table: dict[str, sp.Expr] = {}
     late = {} if keys is None else scene.contact_parameters
     for parameter in scene.parameters:
-        if parameter.name in given:
+        if parameter.name in free:
+            table[parameter.name] = parameter.symbol
+        elif parameter.name in given:
             table[parameter.name] = exact_number(given[parameter.name], where=f"parameter {parameter.name}")
         elif parameter.name not in late:
             earlier = {p.name: table[p.name] for p in scene.parameters if p.name in table}
@@ -161,9 +185,9 @@ def resolve_parameters(
 
 
 def _sort_keys(
-    scene: Scene, given: Mapping[str, Number], free: str | None = None
+    scene: Scene, given: Mapping[str, Number], free: Collection[str] = ()
 ) -> tuple[dict[sp.Symbol, sp.Expr], dict[sp.Symbol, sp.Expr], dict[str, sp.Expr]]:
-    """Natural keys by symbol, with defaults, the free one as its symbol; those whose default is a formula; and raw
+    """Natural keys by symbol, with defaults, free ones as their symbols; those whose default is a formula; and raw
     components by name."""
     raw = {c.name for c in scene.coordinates} | {f"u_{c.name}" for c in scene.coordinates}
     natural = {k.name: k for k in scene.keys}
@@ -181,7 +205,7 @@ def _sort_keys(
     values: dict[sp.Symbol, sp.Expr] = {}
     formulas: dict[sp.Symbol, sp.Expr] = {}
     for name, key in natural.items():
-        if name == free:
+        if name in free:
             values[key.symbol] = key.symbol
         elif name in exact:
             values[key.symbol] = exact[name]
@@ -194,7 +218,10 @@ def _sort_keys(
                 f"give {name}=EXPRESSION or a named state: "
                 f"{', '.join(s.name for s in scene.states) or 'none'}"
             )
-    return values, formulas, {name: value for name, value in exact.items() if name in raw and name not in natural}
+    components = {name: value for name, value in exact.items() if name in raw and name not in natural}
+    single = {str(s): s for s in (*scene.q, *scene.u)}
+    components |= {name: single[name] for name in free if name in raw and name not in natural}
+    return values, formulas, components
 
 
 def _components(

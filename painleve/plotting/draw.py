@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 from painleve.errors import InputError
 from painleve.plotting.distances import draw_distances
+from painleve.plotting.friction_map import draw_friction_map
 from painleve.plotting.gamma_map import draw_gamma_map
 from painleve.plotting.members import draw_members
 from painleve.plotting.regimes import draw_regimes
@@ -28,6 +29,7 @@ DRAWINGS: Mapping[str, Drawing] = MappingProxyType(
     {
         "distances": draw_distances,
         "members": draw_members,
+        "friction_map": draw_friction_map,
         "gamma_map": draw_gamma_map,
         "regimes": draw_regimes,
         "trajectory": draw_trajectory,

@@ -69,7 +69,8 @@ def exact(value: float) -> sp.Rational:
 
 
 def exact_vector(values: Any) -> Vector:
-    x, y, z = (exact(v) for v in values)
+    """Three decimals; what is rounding beside a metre is zero."""
+    x, y, z = (exact(v) if abs(float(v)) > ROUNDING else sp.Integer(0) for v in values)
     return x, y, z
 
 

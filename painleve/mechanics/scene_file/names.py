@@ -5,7 +5,7 @@ from __future__ import annotations
 import keyword
 import re
 
-from painleve.dataset_names import EXACT, IN_REGIMES, IN_SWEEPS, IN_TRAJECTORIES
+from painleve.dataset_names import EXACT, IN_FRICTION_MAPS, IN_REGIMES, IN_SWEEPS, IN_TRAJECTORIES
 
 __all__ = ["shown", "why_no_latex", "why_no_name", "why_no_sentence", "why_no_symbol"]
 
@@ -47,7 +47,7 @@ def why_no_symbol(name: str, *, coordinate: bool) -> str | None:
     """Why a name cannot be that of a coordinate, or of a parameter or a key; None if it can."""
     if name in IN_FORMULAS:
         return f"{name} has a meaning in formulas already; choose another name"
-    swept = name in IN_SWEEPS | IN_REGIMES or name.endswith(EXACT)
+    swept = name in IN_SWEEPS | IN_REGIMES | IN_FRICTION_MAPS or name.endswith(EXACT)
     if swept or (coordinate and name in IN_TRAJECTORIES):
         return f"{name} is what datasets call something else; choose another name, such as {name}_0"
     if name.startswith("u_"):
