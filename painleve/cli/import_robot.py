@@ -35,10 +35,10 @@ def register(commands: Any) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from painleve.mechanics.library import load_scene
     from painleve.mechanics.robot_file.contact import choose_contact
     from painleve.mechanics.robot_file.read import read_robot
     from painleve.mechanics.robot_file.scene_text import robot_scene_text
+    from painleve.mechanics.scene_file.build import scene_of_text
     from painleve.whole_file import write_whole
 
     target = options.output
@@ -57,8 +57,8 @@ def run(options: argparse.Namespace) -> int:
         plane=options.plane,
     )
     text = robot_scene_text(robot, options.model, chosen, options.planar)
+    scene = scene_of_text(target.name, text)  # refused here, what cannot be read back leaves no file
     write_whole(target, text.encode())
-    scene = load_scene(target)
     print(f"{target}: {scene.sentence}")
     print(f"  coordinates  {', '.join(c.name for c in scene.coordinates)}")
     print(f"  friction     {float(chosen.friction):g}")

@@ -23,7 +23,8 @@ def robot_scene_text(robot: Robot, path: Path, chosen: ChosenContact, planar: bo
     a planar scene of a mechanism that does not move in one plane with the normal.
     """
     mechanism, aside = _connected(robot.mechanism, chosen.tree.point.body)
-    tree = Tree(mechanism=mechanism, point=chosen.tree.point, plane=chosen.tree.plane, others=chosen.tree.others)
+    kept = tuple(other for other in chosen.tree.others if other.body in mechanism.by_name)
+    tree = Tree(mechanism=mechanism, point=chosen.tree.point, plane=chosen.tree.plane, others=kept)
     notes = [*robot.notes, *chosen.notes]
     if aside:
         notes.append(f"bodies that are not joined to {tree.point.body}: {', '.join(aside)}")
