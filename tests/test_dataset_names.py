@@ -32,7 +32,7 @@ def trajectory_names() -> set[str]:
     """Of the rod's; in space the tangential components have two names more each."""
     fall = painleve.simulate(painleve.make_state(rod(), "sliding"), step=1e-2, until=2e-2)
     own = {name for c in rod().coordinates for name in (c.name, f"u_{c.name}")}
-    return (names_in(record(fall)) - own) | {f"{letter}_{side}" for letter in "vr" for side in TANGENTIAL}
+    return (names_in(fall.to_xarray()) - own) | {f"{letter}_{side}" for letter in "vr" for side in TANGENTIAL}
 
 
 def sweep_names() -> set[str]:
