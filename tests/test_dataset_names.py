@@ -10,12 +10,13 @@ import sympy as sp
 import xarray as xr
 
 import painleve
-from painleve.dataset_names import EXACT, IN_REGIMES, IN_SWEEPS, IN_TRAJECTORIES, hold_to
+from painleve.dataset_names import EXACT, IN_FRICTION_MAPS, IN_REGIMES, IN_SWEEPS, IN_TRAJECTORIES, hold_to
 from painleve.dynamics.record import TANGENTIAL, record
 from painleve.errors import InputError
 from painleve.mechanics.scene import Coordinate, make_scene
 from painleve.mechanics.scene_file.names import why_no_symbol
 from painleve.sweep.distance_table import DistanceTable
+from painleve.sweep.friction_map import map_friction
 from painleve.sweep.grid import make_grid
 from painleve.sweep.regimes import map_regimes
 
@@ -35,6 +36,10 @@ def trajectory_names() -> set[str]:
     return (names_in(fall.to_xarray()) - own) | {f"{letter}_{side}" for letter in "vr" for side in TANGENTIAL}
 
 
+def map_names() -> set[str]:
+    return names_in(map_friction(rod(), {"theta": np.array([1.0, 1.2])}, state="paradox")) - {"theta"}
+
+
 def sweep_names() -> set[str]:
     grid = make_grid(rod(), states=["paradox"], over={"mu": [1, 2]})
     return names_in(DistanceTable(grid, np.array([1e-3])).dataset({})) - {"mu", f"mu{EXACT}"}
@@ -47,17 +52,22 @@ def regime_names() -> set[str]:
 
 @pytest.mark.parametrize(
     ("register", "written"),
-    [(IN_TRAJECTORIES, trajectory_names), (IN_SWEEPS, sweep_names), (IN_REGIMES, regime_names)],
+    [
+        (IN_TRAJECTORIES, trajectory_names),
+        (IN_SWEEPS, sweep_names),
+        (IN_REGIMES, regime_names),
+        (IN_FRICTION_MAPS, map_names),
+    ],
     ids=["trajectory", "sweep", "regimes"],
 )
 def test_the_register_lists_what_a_dataset_writes_and_nothing_else(register: Iterable[str], written) -> None:
     assert written() == set(register)
 
 
-@pytest.mark.parametrize("name", sorted(IN_TRAJECTORIES | IN_SWEEPS | IN_REGIMES))
+@pytest.mark.parametrize("name", sorted(IN_TRAJECTORIES | IN_SWEEPS | IN_REGIMES | IN_FRICTION_MAPS))
 def test_a_scene_file_can_give_a_registered_name_to_nothing_that_would_stand_beside_it(name: str) -> None:
     assert why_no_symbol(name, coordinate=True) is not None
-    if name in IN_SWEEPS | IN_REGIMES:
+    if name in IN_SWEEPS | IN_REGIMES | IN_FRICTION_MAPS:
         assert why_no_symbol(name, coordinate=False) is not None
     if not name.startswith("u_"):  # a velocity
         assert why_no_symbol(f"{name}_0", coordinate=True) is None
