@@ -11,12 +11,13 @@ BIN := .venv/bin
 # The stamp is named by what was installed, so that it vanishes when the lock or the metadata change, and a second run
 # has nothing to do and asks nobody.
 STAMP := .venv/installed-$(shell cat requirements.lock pyproject.toml | cksum | tr ' ' '-')
+ROBOTS_STAMP := .venv/robots-$(shell cat requirements.lock robots.lock | cksum | tr ' ' '-')
 MUTANTS_STAMP := .venv/mutants-$(shell cat requirements.lock mutants.lock | cksum | tr ' ' '-')
 NOTEBOOKS := $(patsubst notebooks/%.py,build/notebooks/%.ipynb,$(wildcard notebooks/*.py))
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install study test test-slow mutants lint types contracts lock clean
+.PHONY: help install study test test-slow test-robots mutants lint types contracts lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
@@ -31,6 +32,9 @@ test: lint types contracts $(NOTEBOOKS) ## install, then check the code, run the
 
 test-slow: install ## install, then run the tests that take more than ten seconds each
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m slow tests
+
+test-robots: $(ROBOTS_STAMP) ## install MuJoCo beside the rest, then run the tests of robots' files against it
+	$(BIN)/python -m pytest tests/test_robot_file.py
 
 mutants: $(MUTANTS_STAMP) ## install mutmut, then try changes of proofs that no test may miss (MUTANTS_FLAGS="--sample 0" for all)
 	$(BIN)/python tests/mutants.py $(MUTANTS_FLAGS)
@@ -47,8 +51,10 @@ contracts: install ## check that every room imports only from the floors below i
 
 lock: ## choose the locked versions anew after a change of the dependencies (needs uv)
 	uv pip compile pyproject.toml --output-file requirements.lock --quiet --universal --generate-hashes \
-		--all-extras --group build --no-emit-index-url --custom-compile-command 'make lock'
+		--extra units --extra test --extra notebook --group build --no-emit-index-url --custom-compile-command 'make lock'
 	uv pip compile --group pyproject.toml:mutants --output-file mutants.lock --quiet --universal --generate-hashes \
+		--constraint requirements.lock --no-emit-index-url --custom-compile-command 'make lock'
+	uv pip compile --group pyproject.toml:robots --output-file robots.lock --quiet --universal --generate-hashes \
 		--constraint requirements.lock --no-emit-index-url --custom-compile-command 'make lock'
 
 clean: ## remove what make and the tools made, but not data/
@@ -86,4 +92,9 @@ $(STAMP): $(BIN)/python
 $(MUTANTS_STAMP): $(STAMP)
 	@rm -f .venv/mutants-*
 	@$(find_installer); $$install --quiet --require-hashes -r mutants.lock
+	@touch $@
+
+$(ROBOTS_STAMP): $(STAMP)
+	@rm -f .venv/robots-*
+	@$(find_installer); $$install --quiet --require-hashes -r robots.lock
 	@touch $@

@@ -58,7 +58,7 @@ def regime_names() -> set[str]:
         (IN_REGIMES, regime_names),
         (IN_FRICTION_MAPS, map_names),
     ],
-    ids=["trajectory", "sweep", "regimes"],
+    ids=["trajectory", "sweep", "regimes", "friction map"],
 )
 def test_the_register_lists_what_a_dataset_writes_and_nothing_else(register: Iterable[str], written) -> None:
     assert written() == set(register)

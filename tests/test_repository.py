@@ -17,6 +17,7 @@ FOLDERS = (".ci", "data/reference", "docs", "notebooks", "painleve", "studies", 
 METADATA = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 LOCK = (ROOT / "requirements.lock").read_text(encoding="utf-8")
 MUTANTS_LOCK = (ROOT / "mutants.lock").read_text(encoding="utf-8")
+ROBOTS_LOCK = (ROOT / "robots.lock").read_text(encoding="utf-8")
 
 # The only places that a text here may send a reader to.
 PUBLISHERS = {"arxiv.org", "doi.org"}
@@ -38,7 +39,8 @@ def texts() -> dict[str, str]:
 
 def direct_requirements() -> list[Requirement]:
     project = METADATA["project"]
-    lists = [project["dependencies"], *project["optional-dependencies"].values(), METADATA["build-system"]["requires"]]
+    extras = [requirements for extra, requirements in project["optional-dependencies"].items() if extra != "robots"]
+    lists = [project["dependencies"], *extras, METADATA["build-system"]["requires"]]
     return [Requirement(line) for requirements in lists for line in requirements]
 
 
@@ -64,24 +66,33 @@ def test_every_direct_dependency_is_locked_within_its_bounds(requirement: Requir
     assert all(requirement.specifier.contains(version) for version in versions)
 
 
-def test_what_makes_mutants_is_locked_beside_it_and_shares_its_versions() -> None:
-    for line in METADATA["dependency-groups"]["mutants"]:
+@pytest.mark.parametrize(
+    ("group", "lock", "shared"),
+    [("mutants", MUTANTS_LOCK, ("pytest", "packaging", "pluggy")), ("robots", ROBOTS_LOCK, ("numpy",))],
+    ids=["mutants", "robots"],
+)
+def test_what_is_installed_on_demand_is_locked_and_shares_its_versions(group: str, lock: str, shared: tuple) -> None:
+    for line in METADATA["dependency-groups"][group]:
         requirement = Requirement(line)
-        versions = locked_versions(requirement.name, MUTANTS_LOCK)
+        versions = locked_versions(requirement.name, lock)
         assert versions
         assert all(requirement.specifier.contains(version) for version in versions)
-    for name in ("pytest", "packaging", "pluggy"):
-        assert locked_versions(name, MUTANTS_LOCK) == locked_versions(name)
+    for name in shared:
+        assert locked_versions(name, lock) == locked_versions(name)
 
 
-@pytest.mark.parametrize("lock", [LOCK, MUTANTS_LOCK], ids=["requirements", "mutants"])
+def test_the_extra_for_robots_is_what_its_tests_install() -> None:
+    assert METADATA["project"]["optional-dependencies"]["robots"] == METADATA["dependency-groups"]["robots"]
+
+
+@pytest.mark.parametrize("lock", [LOCK, MUTANTS_LOCK, ROBOTS_LOCK], ids=["requirements", "mutants", "robots"])
 def test_every_locked_version_has_a_hash(lock: str) -> None:
     entries = re.split(r"^(?=[A-Za-z0-9])", lock, flags=re.MULTILINE)[1:]
-    assert len(entries) > 10
+    assert len(entries) > 5
     assert [entry.split()[0] for entry in entries if "--hash=sha256:" not in entry] == []
 
 
-@pytest.mark.parametrize("lock", [LOCK, MUTANTS_LOCK], ids=["requirements", "mutants"])
+@pytest.mark.parametrize("lock", [LOCK, MUTANTS_LOCK, ROBOTS_LOCK], ids=["requirements", "mutants", "robots"])
 def test_a_lock_names_no_address_and_no_path(lock: str) -> None:
     assert re.findall(r"[a-z+]+://\S*|--(?:extra-)?index-url|--find-links|(?<![\w.])/\S+", lock) == []
 
@@ -106,7 +117,7 @@ def test_the_readme_sets_up_with_two_commands_that_make_knows_and_ci_runs() -> N
     assert commands == ["make study", "make test"]
     assert {command.removeprefix("make ") for command in commands} <= set(makefile_phony_targets())
     ci_lines = (ROOT / ".ci/run").read_text(encoding="utf-8").splitlines()
-    expected = ["make test", "make test-slow", "make study STUDY_FLAGS=--quick"]
+    expected = ["make test", "make test-slow", "make test-robots", "make study STUDY_FLAGS=--quick"]
     assert [line for line in ci_lines if line.startswith("make ")] == expected
 
 
