@@ -11,7 +11,7 @@ import xarray as xr
 
 import painleve
 from painleve.dataset_names import EXACT, IN_FRICTION_MAPS, IN_REGIMES, IN_SWEEPS, IN_TRAJECTORIES, hold_to
-from painleve.dynamics.record import TANGENTIAL, record
+from painleve.dynamics.record import TANGENTIAL
 from painleve.errors import InputError
 from painleve.mechanics.scene import Coordinate, make_scene
 from painleve.mechanics.scene_file.names import why_no_symbol
@@ -97,4 +97,4 @@ def test_a_scene_made_in_python_whose_coordinate_is_called_gamma_has_no_dataset_
     )
     fall = painleve.simulate(painleve.make_start(scene, q={"gamma": 1}), step=1e-2, until=2e-2)
     with pytest.raises(InputError, match="the scene's gamma is what datasets call something else; rename it"):
-        record(fall)
+        fall.to_xarray()

@@ -103,7 +103,7 @@ class _ZeroSearch:
     def run(self) -> Zeros:
         with ctx.workprec(BITS):
             found, open_parts, outside = self._divide()
-            clusters = [self._cluster(part) for part in _merged(open_parts)]
+            clusters = self._clusters(_merged(open_parts))
             ordered = sorted([*found, *clusters], key=lambda zero: zero.enclosure.mid())
             gaps = [self._at(part.union()) for part in _merged(outside)]
         return Zeros(zeros=tuple(_without_doubles(ordered)), outside=tuple(gaps), boxes=self.boxes)
@@ -218,6 +218,22 @@ class _ZeroSearch:
             ):
                 return place
         return None
+
+    def _clusters(self, parts: list[_Part]) -> list[Zero]:
+        """A zero for each part. One that stays undecided may be the flank of a multiple zero next to it: where a higher
+        derivative keeps its sign on both and on what lies between, they hold that one zero together."""
+        zeros = [self._cluster(part) for part in parts]
+        i = 0
+        while i + 1 < len(parts):
+            pair = zeros[i : i + 2]
+            joined = _Part(parts[i].low, parts[i + 1].high)
+            both = self._cluster(joined) if any(z.status is ZeroStatus.UNDECIDED for z in pair) else None
+            if both is not None and both.status is ZeroStatus.EXACT:
+                parts[i : i + 2], zeros[i : i + 2] = [joined], [both]
+                i = max(i - 1, 0)
+            else:
+                i += 1
+        return zeros
 
     def _cluster(self, part: _Part) -> Zero:
         s = self._at(part.union())
