@@ -12,6 +12,7 @@ from hypothesis import settings
 
 # set before matplotlib is imported anywhere, and inherited by the commands that tests start
 os.environ["MPLBACKEND"] = "Agg"
+os.environ["PAINLEVE_QUIET"] = "1"  # on a slow day what takes a second would add a line to what a test reads
 
 # The same examples on every run and machine: a failure in CI is a failure at home. No deadline: the first call of a
 # jitted function takes a second, the next a microsecond.

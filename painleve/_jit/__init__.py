@@ -13,6 +13,7 @@ from typing import Any
 
 import numba
 
+from painleve._jit.announced import announce_compiling
 from painleve._jit.code_cache import CodeCache
 from painleve._jit.folder import CACHE
 
@@ -20,6 +21,7 @@ __all__ = ["CACHE", "jit"]
 
 # error_model="numpy": a division by zero gives inf, which the law's clamps rely on; without it every division
 # carries a branch and nothing vectorises. fastmath stays off: it assumes that NaN and inf do not occur.
+announce_compiling()
 _compiled = numba.njit(error_model="numpy", nogil=True)
 
 

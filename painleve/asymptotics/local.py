@@ -26,6 +26,7 @@ from painleve.exact.balls import ball
 from painleve.exact.jets import Jet, jets, monomials
 from painleve.kernels.compiled import Kernels, make_kernels
 from painleve.kernels.rows import Rows
+from painleve.progress import told
 from painleve.theory.limit_set import LimitSet
 from painleve.theory.sections.listed import theory_of
 
@@ -213,6 +214,7 @@ def _enclosed_coefficients(problem: LocalProblem, eps: float, degree: int) -> np
 
 
 @lru_cache(maxsize=64)
+@told(lambda limit: f"expanding the law about {limit.state.scene.name}, {limit.state.label}")
 def make_local_problem(limit: LimitSet) -> LocalProblem:
     """Round an exact state and its limit set to arrays, and expand the rows of its scene about it."""
     state = limit.state

@@ -29,6 +29,7 @@ from painleve.asymptotics.witness import find_family
 from painleve.core.branch_excess import REACH
 from painleve.core.codes import ContactMode
 from painleve.errors import InputError
+from painleve.progress import told
 from painleve.sets import Bounds, excess_of_segment_from_profile
 from painleve.theory.domain import check_domain
 from painleve.theory.limit_set import LimitSet
@@ -52,6 +53,7 @@ class OptimiseOptions:
             raise InputError(f"starts: {self.starts} must be between 1 and 1000")
 
 
+@told(lambda limit, *_, **__: f"searching A_eps of {limit.state.scene.name}, {limit.state.label}")
 def optimise_distance(limit: LimitSet, eps: float, options: OptimiseOptions | None = None) -> Distance:
     """Both excesses by optimisation: e(A_eps, A) is bounded from below by a true member at the maximum found, whose
     estimate and error are in the settings; e(A, A_eps) from above by witnesses, or by the nearest members found.

@@ -43,6 +43,7 @@ from painleve.errors import InputError
 from painleve.exact.signs import Sign, exact_sign
 from painleve.mechanics.derive import derive
 from painleve.mechanics.scene import Scene
+from painleve.progress import told
 from painleve.theory.limit_set import LimitSet
 from painleve.theory.neighbourhood import Neighbourhood, neighbours
 
@@ -243,6 +244,7 @@ def _sentence(limit: LimitSet, isolated: bool) -> str:
     return f"d_H(A, A_eps) = C eps + o(eps) with A = {sets[limit.kind]}"
 
 
+@told(lambda limit: f"working out C in closed form for {limit.state.scene.name}")
 def _closed_form(limit: LimitSet) -> sp.Expr | None:
     """C of the sticking branch where it has a closed form (see above), exact; None elsewhere."""
     state, scene, d = limit.state, limit.state.scene, derive(limit.state.scene)

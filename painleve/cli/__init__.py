@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import re
 import sys
 from collections.abc import Mapping, Sequence
@@ -27,6 +28,8 @@ from painleve.cli import (
     sweep,
 )
 from painleve.errors import InputError, nearest
+from painleve.notes import one_line
+from painleve.progress import reporting
 
 __all__ = ["main"]
 
@@ -64,7 +67,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser, commands = _parser()
         _check_words(words, commands)
         options = parser.parse_args(words)
-        return int(options.run(options))
+        with reporting(_tell):
+            return int(options.run(options))
     except InputError as error:
         return _complain(str(error))
     except OSError as error:
@@ -74,6 +78,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("painleve: interrupted", file=sys.stderr)
         return 130
+
+
+def _tell(work: str) -> None:
+    """The line of long work: a stream that is gone takes nothing away from it."""
+    with contextlib.suppress(AttributeError, OSError, ValueError):
+        print(f"painleve: {one_line(work)} ...", file=sys.stderr, flush=True)
 
 
 def _complain(message: str) -> int:

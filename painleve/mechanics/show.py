@@ -14,6 +14,7 @@ from painleve.mechanics.formula import Formula
 from painleve.mechanics.scene import Coordinate, Parameter, Scene
 from painleve.mechanics.scene_file.work import TooMuchWork, limited_calls
 from painleve.mechanics.sections.section import norm
+from painleve.progress import told
 
 __all__ = ["as_dict", "as_latex", "as_text", "derivation_lines"]
 
@@ -23,6 +24,7 @@ SHORT = 12  # operations of a formula that is left as it is
 LONG = 380  # and of one that is only factored: trigonometric identities would take seconds
 
 
+@told(lambda scene: f"simplifying the formulas of {scene.name}")
 def derivation_lines(scene: Scene) -> list[Formula]:
     """The formulas from M to the critical friction; simplifying takes up to some seconds.
 

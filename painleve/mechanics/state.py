@@ -17,6 +17,7 @@ from painleve.exact.parse import exact_number, parse_expression
 from painleve.exact.signs import Sign, exact_sign
 from painleve.mechanics.derive import derive
 from painleve.mechanics.scene import NamedState, Scene
+from painleve.progress import told
 
 __all__ = ["Number", "State", "make_curve", "make_family", "make_state", "resolve_parameters"]
 
@@ -59,6 +60,7 @@ class State:
         return float(enclosure.mid()) + 0.0  # no negative zero
 
 
+@told(lambda scene, *_, **__: f"checking a state of {scene.name} in exact arithmetic")
 def make_state(
     scene: Scene,
     name: str | None = None,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from painleve.mechanics.state import State
+from painleve.progress import told
 from painleve.theory.limit_set import LimitSet, limit_set
 from painleve.theory.neighbourhood import Neighbourhood, Neighbours, neighbours
 
@@ -72,6 +73,7 @@ class Classification:
         }
 
 
+@told(lambda state: f"deciding the branch of {state.scene.name} at {state.label}")
 def classify(state: State) -> Classification:
     """The branch of Theorem 1 at an exact state: exact signs of gamma at q and near q, or an undecided one."""
     limit = limit_set(state)

@@ -24,6 +24,7 @@ from painleve.exact.signs import Sign, exact_sign
 from painleve.exact.zeros import Zero, ZeroStatus
 from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import Number
+from painleve.progress import told
 from painleve.theory.curve import StateCurve
 from painleve.theory.limit_set import limit_set
 from painleve.theory.neighbourhood import Neighbourhood, Neighbours, neighbours, smooth_indicator
@@ -102,6 +103,7 @@ class CriticalStates:
         return lowest
 
 
+@told(lambda scene, along, *_, **__: f"searching {scene.name} along {along} for zeros of gamma and extrema of mu_c")
 def critical_states(
     scene: Scene,
     along: str,

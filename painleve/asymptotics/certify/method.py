@@ -30,6 +30,7 @@ from painleve.asymptotics.sample import check_eps
 from painleve.asymptotics.witness import find_family
 from painleve.core.codes import ContactMode
 from painleve.errors import InputError
+from painleve.progress import told
 from painleve.sets import Bounds
 from painleve.theory.domain import check_domain
 from painleve.theory.limit_set import LimitSet
@@ -69,6 +70,7 @@ class _Enclosure:
         return sum(s.evaluations for s in self.searches)
 
 
+@told(lambda limit, *_, **__: f"enclosing the distances at {limit.state.scene.name}, {limit.state.label}")
 def certify_distance(limit: LimitSet, eps: float, options: CertifyOptions | None = None) -> Distance:
     """Enclosures of both excesses; the relative widths that were reached are in the ending.
 

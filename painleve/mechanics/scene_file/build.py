@@ -20,6 +20,7 @@ from painleve.mechanics.scene_file.mechanics import read_contact, read_motion, r
 from painleve.mechanics.scene_file.names import why_no_name, why_no_symbol
 from painleve.mechanics.scene_file.work import TooMuchWork, limited_calls, nodes_of
 from painleve.mechanics.tree.scene import make_tree_scene
+from painleve.progress import told
 
 __all__ = ["scene_of_text"]
 
@@ -33,6 +34,7 @@ Declared = TypeVar("Declared", Coordinate, Parameter, StateKey)
 
 
 @lru_cache(maxsize=32)  # one scene for one text, so that what is derived from it is derived once
+@told(lambda name, *_, **__: f"deriving the scene of {name}")
 def scene_of_text(name: str, text: str) -> Scene:
     """The scene that a TOML text describes; `name` is what messages call the file.
 

@@ -10,6 +10,7 @@ from painleve.errors import InputError
 from painleve.exact.parse import exact_number
 from painleve.exact.signs import Sign
 from painleve.mechanics.state import Number, State
+from painleve.progress import told
 from painleve.theory.hypotheses.claims import ClaimStatus
 from painleve.theory.hypotheses.constraint import check_constraint
 from painleve.theory.hypotheses.findings import Hypothesis
@@ -69,6 +70,7 @@ class HypothesesCheck:
         }
 
 
+@told(lambda state, **__: f"checking the hypotheses near {state.scene.name}, {state.label}")
 def check_hypotheses(state: State, *, radius: Number = DEFAULT_RADIUS) -> HypothesesCheck:
     """Check the hypotheses of Theorem 1 on the closed Euclidean ball B(q, radius), in the scene's units.
 
