@@ -51,6 +51,14 @@ def test_all_zeros_of_a_polynomial_are_found_exactly_with_their_multiplicities(r
     assert len(found) == len(set(roots))
 
 
+@pytest.mark.parametrize(("place", "multiplicity"), [("-1", 3), ("1", 4), ("-17/9", 4), ("-15/8", 4)])
+def test_a_zero_of_high_multiplicity_takes_the_undecided_parts_beside_it_along(place, multiplicity):
+    """Balls decide some parts next to such a zero and not others, which are beside it without a touch."""
+    polynomial = sp.expand((s - sp.Rational(place)) ** multiplicity * (s**2 + 1))
+    (zero,) = find_zeros(polynomial, s, sp.Integer(-3), sp.Integer(3)).zeros
+    assert (zero.place, zero.multiplicity, zero.rise) == (sp.Rational(place), multiplicity, 1)
+
+
 @given(st.lists(st.integers(-5, 5), min_size=5, max_size=5), st.integers(1, 4))
 @settings(max_examples=30)
 def test_the_zeros_of_a_trigonometric_polynomial_are_those_of_a_fine_scan(c, k):
