@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -10,12 +11,15 @@ from dynamics_scenes import Reference, block, space_block
 from scipy.optimize import brentq
 
 from painleve.core.codes import ContactMode
-from painleve.core.motion_codes import Change
+from painleve.core.motion_codes import Change, FixedStep
+from painleve.core.stepping import SteppingMethod
+from painleve.dynamics.contact_rows import gamma_along
+from painleve.dynamics.fixed_step import empty_track
 from painleve.dynamics.simulate import simulate
-from painleve.dynamics.start import make_start
+from painleve.dynamics.start import as_start, make_start
 from painleve.dynamics.trajectory import Trajectory
 from painleve.mechanics.library import load_scene
-from painleve.mechanics.state import State, make_state
+from painleve.mechanics.state import make_state
 
 ROD = load_scene("slender_rod")
 SCHEMES = ("contact_dynamics", "moreau_jean", "stewart_trinkle", "anitescu_potra", "schatzman_paoli")
@@ -53,28 +57,68 @@ def kinetic(M: np.ndarray, x: np.ndarray) -> float:
     return math.sqrt(x @ M @ x)
 
 
-def stopped(slip: float) -> tuple[State, float]:
-    """A rod that turns about its tip, whose slip friction stops at once; the part of the speed that this takes.
+class Stop:
+    """A rod that turns about its tip, whose slip friction stops in the first step; `size` and `speed` say of how much.
 
-    a + mu_plus b is a little above zero where the law is taken, and the contact force of the slip accordingly large.
+    critical: mu over the value at which a + mu_plus b vanishes where the law is taken. A little below 1 there is no
+    paradox and the contact force of the slip is large; above 1 there is one. free: F of docs/theory.md, section 7.
     """
-    theta, omega, h = math.pi / 3, 2.0, 1e-4
-    M, inverse, end = np.diag([1.0, 1.0, 1 / 3]), np.diag([1.0, 1.0, 3.0]), theta + h * omega
-    w, H = np.array([0.0, 1.0, -math.cos(end)]), np.array([1.0, 0.0, math.sin(end)])
-    W, mu = np.array([w, H]).T, -(w @ inverse @ w) / (w @ inverse @ H) * (1.0 - 1e-4)
-    v = np.array([slip - omega * math.sin(theta), omega * math.cos(theta) - h * 9.81, omega])
-    taken = inverse @ W @ np.linalg.solve(W.T @ inverse @ W, W.T @ v)
-    state = make_state(ROD, keys={"theta": "pi/3", "omega": omega, "slip": slip}, parameters={"mu": mu})
-    return state, kinetic(M, taken) / kinetic(M, v)
+
+    h, theta, gravity = 1e-4, math.pi / 3, 9.81
+
+    def __init__(self, slip: float, omega: float, critical: float) -> None:
+        M, inverse, end = np.diag([1.0, 1.0, 1 / 3]), np.diag([1.0, 1.0, 3.0]), self.theta + self.h * omega
+        w, H = np.array([0.0, 1.0, -math.cos(end)]), np.array([1.0, 0.0, math.sin(end)])
+        W, a, self.critical = np.array([w, H]).T, w @ inverse @ w, critical
+        v = np.array([slip - omega * math.sin(self.theta), omega * math.cos(self.theta), omega])
+        v[1] -= self.h * self.gravity
+        self.keys = {"theta": "pi/3", "omega": omega, "slip": slip}
+        self.mu = -critical * a / (w @ inverse @ H)
+        self.size = kinetic(M, inverse @ W @ np.linalg.solve(W.T @ inverse @ W, W.T @ v))
+        self.speed = kinetic(M, v)
+        self.free = self.h * (self.gravity + omega**2 * math.sin(end) / math.sqrt(a))
+
+    def change(self, flight: int) -> Change:
+        """What the step that stops it is, after so many steps without contact."""
+        start = as_start(make_state(ROD, keys=self.keys, parameters={"mu": self.mu}))
+        track, method = empty_track(start, 1), SteppingMethod(int(FixedStep.CONTACT_DYNAMICS), 0.0, 1e-6)
+        _, _, since = start.motion.run(method, flight, np.array([0.0, self.h]), np.array([self.h]), start.p, track)
+        assert since == 0
+        assert track.branch[1] == ContactMode.STICK
+        rows, _, _ = start.tabulate(np.zeros(1), track.q[1:], track.u[1:])
+        assert (gamma_along(start.motion, rows)[0] > 0.0) == (self.critical < 1.0)
+        return Change(track.change[1])
 
 
-def test_a_stop_without_a_paradox_is_a_jump_if_it_takes_a_tenth_of_the_speed() -> None:
-    limit = brentq(lambda slip: stopped(slip)[1] - 0.1, -0.01, -1.0)
-    for slip, jumps in ((0.99 * limit, []), (1.01 * limit, [Change.JUMP_WITHOUT_COLLISION])):
-        found = simulate(stopped(slip)[0], step=1e-4, until=2e-4, contact_tolerance=1e-6)
-        assert found.branch[1] == ContactMode.STICK
-        assert found.contact_quantities()["gamma"][1] > 0.0
-        assert [jump.kind for jump in found.jumps] == jumps
+@pytest.mark.parametrize(
+    ("omega", "critical", "least"),
+    [
+        (2.0, 1.0 - 1e-4, lambda stop, flight: stop.speed / 10.0),
+        (0.0, 1.0 - 1e-4, lambda stop, flight: 10.0 * stop.free * (flight + 1)),
+        (0.1, 1.5, lambda stop, flight: 3.0 * stop.free * (flight + 1)),
+    ],
+    ids=["a tenth of the speed", "ten times the free change since the last contact", "in a paradox three times that"],
+)
+def test_a_stop_is_a_jump_if_it_takes_more_than(
+    omega: float, critical: float, least: Callable[[Stop, int], float]
+) -> None:
+    for flight in (0, 1):
+
+        def excess(slip: float, flight: int = flight) -> float:
+            stop = Stop(slip, omega, critical)
+            return stop.size - least(stop, flight)
+
+        limit = brentq(excess, -1e-4, -1.0)
+        assert Stop(0.99 * limit, omega, critical).change(flight) is Change.ORDINARY
+        assert Stop(1.01 * limit, omega, critical).change(flight) is Change.JUMP_WITHOUT_COLLISION
+
+
+def test_an_approach_faster_than_ten_steps_of_free_fall_is_a_collision() -> None:
+    h, weight = 1e-3, 10.0
+    for factor, kinds in ((0.99, []), (1.01, [Change.FRICTIONAL_IMPACT])):
+        u = {"x": 1, "y": -(10.0 * factor - 1.0) * weight * h}
+        start = make_start(block(), q={"x": 0, "y": 0}, u=u, parameters={"weight": weight, "mu": "1/4"})
+        assert [jump.kind for jump in simulate(start, step=h, until=h).jumps] == kinds
 
 
 def test_a_slip_that_follows_the_edge_of_its_wedge_has_no_jump_but_the_one_that_does_not_shrink() -> None:
