@@ -53,8 +53,8 @@ only_mutate = {files}
 pytest_add_cli_args = ["-p", "no:cacheprovider", "-p", "no:xdist"]
 pytest_add_cli_args_test_selection = {tests}
 process_isolation = "forkserver"
-timeout_constant = 4.0
-timeout_multiplier = 2.0
+timeout_constant = 15.0
+timeout_multiplier = 4.0
 use_git_change_detection = false
 use_setproctitle = false
 """

@@ -88,6 +88,8 @@ def kind_by_brute_force(scene: Scene, height: sp.Expr, gamma: sp.Expr) -> Neighb
 
 
 FLAT = sp.Integer(0)
+# Machin's zero, which exact_sign does not know.
+NOTHING = 4 * sp.atan(sp.Rational(1, 5)) - sp.atan(sp.Rational(1, 239)) - sp.pi / 4
 DECIDED = {
     "gamma grows along the floor": (FLAT, x, APPROACHED, "not parallel"),
     "gamma grows along the floor, against a slope into it": (FLAT, x + 5 * y, APPROACHED, "not parallel"),
@@ -118,6 +120,21 @@ DECIDED = {
     "one coordinate, order four, negative": (FLAT, x**5 - x**4, ISOLATED, "order 4, negative"),
     "one coordinate, order seven": (FLAT, -(x**7), APPROACHED, "order 7, odd"),
     "one coordinate, odd, and the floor sees no other": (FLAT, y**3, UNDECIDED, "do not decide"),
+    "one coordinate, odd, and an even order above it that must not be asked": (
+        FLAT,
+        y**3 + y**4,
+        UNDECIDED,
+        "not decide",
+    ),
+    "one coordinate, an undecided order and a positive one above it": (
+        FLAT,
+        NOTHING * x**3 + x**4,
+        UNDECIDED,
+        "not decide",
+    ),
+    "one coordinate, order eight": (FLAT, x**8, APPROACHED, "order 8, positive"),
+    "one coordinate, order eight, negative": (FLAT, -(x**8), ISOLATED, "order 8, negative"),
+    "one coordinate, order nine": (FLAT, x**9, UNDECIDED, "do not decide"),
     "one coordinate, order ten": (FLAT, -(x**10), UNDECIDED, "do not decide"),
     "not smooth": (FLAT, -sp.Abs(x), UNDECIDED, "not smooth"),
 }

@@ -31,6 +31,7 @@ BRANCHES = {
     ("two_link_arm", "approached"): Branch.CRITICAL_APPROACHED,
     ("two_link_arm", "isolated"): Branch.CRITICAL_ISOLATED,
 }
+UNDECIDED_MU = "4/3 + 4*atan(1/5) - atan(1/239) - pi/4"  # Machin's zero
 EPS = (1e-2, 1e-4, 1e-6)
 REPRESENTATIVES = [("slender_rod", name) for name in ("sliding", "paradox", "critical", "double_zero")] + [
     ("worn_tip_rod", "isolated"),
@@ -80,6 +81,17 @@ def test_with_u_tilde_equal_to_u_minus_there_is_no_branch_whatever_gamma(slip):
         found = classify(make_state(load_scene("slender_rod"), name, keys={"slip": slip}))
         assert found.branch is Branch.NONE
         assert "u_tilde = u-" in found.reason
+
+
+@pytest.mark.parametrize(("mu", "reason"), [(UNDECIDED_MU, "undecided"), ("4/3", "")])
+def test_what_is_undecided_of_the_limit_set_or_near_it_leaves_the_branch_undecided(mu, reason):
+    """mu = 4/3 plus a zero that is not among the identities known: gamma has no sign then, and no branch is claimed."""
+    found = classification_of("slender_rod", "double_zero", mu=mu)
+    assert found.branch is (Branch.UNDECIDED if reason else Branch.CRITICAL_APPROACHED)
+    assert reason in found.reason
+    answer = found.as_dict()
+    assert answer["limit_set"] == (None if reason else "segment")
+    assert answer["sign_of_gamma"] == ("undecided" if reason else "zero")
 
 
 @pytest.mark.parametrize(
