@@ -50,7 +50,7 @@ CONFIGURATION = """
 [tool.mutmut]
 source_paths = ["painleve"]
 only_mutate = {files}
-pytest_add_cli_args = ["-p", "no:cacheprovider", "-p", "no:xdist"]
+pytest_add_cli_args = ["-p", "no:cacheprovider", "-p", "no:xdist", "-p", "forget_caches"]
 pytest_add_cli_args_test_selection = {tests}
 process_isolation = "forkserver"
 timeout_constant = 15.0
@@ -127,7 +127,7 @@ def tried(room: Room, words: Sequence[str]) -> list[Mutant]:
 def environment() -> dict[str, str]:
     """This one, but for this checkout on the path: what is imported has to be the mutated copy."""
     places = [p for p in os.environ.get("PYTHONPATH", "").split(os.pathsep) if p and Path(p).resolve() != ROOT]
-    return {**os.environ, "PYTHONPATH": os.pathsep.join(places)}
+    return {**os.environ, "PYTHONPATH": os.pathsep.join([*places, str(ROOT / "tests")])}
 
 
 def run_mutmut(children: int, sample: int | None) -> None:

@@ -318,6 +318,10 @@ def test_an_isolated_state_is_proved_by_enclosures_of_both_parts_of_its_statemen
     assert verdict_on(ISOLATED, near_ends, lambda e: Bounds.unknown()) is VerdictStatus.UNDECIDED
     assert verdict_on(ISOLATED, near_ends, lambda e: Bounds.at_most(0.1 * HALF)) is VerdictStatus.UNDECIDED
     assert verdict_on(ISOLATED, near_ends, lambda e: Bounds.at_least(1.1 * HALF)) is VerdictStatus.REFUTED
+    # half the length is rounded: what exceeds it by rounding refutes nothing, what exceeds it by more does
+    rounded, more = (Bounds.at_least(HALF * (1.0 + x)) for x in (5e-13, 1e-11))
+    assert verdict_on(ISOLATED, near_ends, lambda e: rounded) is VerdictStatus.PROVED
+    assert verdict_on(ISOLATED, near_ends, lambda e: more) is VerdictStatus.REFUTED
 
 
 def test_an_undecided_branch_stays_undecided_whatever_is_measured():
