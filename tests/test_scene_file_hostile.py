@@ -179,7 +179,7 @@ NAMES = (
     "eps",
     "verdict",
     "m_exact",
-    "excess_x",
+    "excess_Aeps_A_lower",
 )
 
 
@@ -200,7 +200,7 @@ def test_a_name_that_would_mean_something_elsewhere_is_refused(table):
             "eps",
             "verdict",
             "m_exact",
-            "excess_x",
+            "excess_Aeps_A_lower",
         }
     }
     for name in NAMES:

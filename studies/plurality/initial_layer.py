@@ -11,7 +11,7 @@ import xarray as xr
 from painleve import sets
 from painleve.core.ball_maps import uniform_ball, uniforms_needed
 from painleve.core.motion_codes import Ending, FixedStep
-from painleve.core.stepping import Method
+from painleve.core.stepping import SteppingMethod
 from painleve.core.streams import uniform_block
 from painleve.dynamics.ensemble import wilson_interval
 from painleve.dynamics.fixed_step import empty_track
@@ -77,7 +77,7 @@ def _right_velocities(start: Start, h: float, eps: float, count: int, seed: int)
     uniform_block(seed, 0, uniforms)
     uniform_ball(uniforms[:needed], dq, eps, d)
     uniform_ball(uniforms[needed:], du, eps, d)
-    method, track = Method(int(FixedStep.CONTACT_DYNAMICS), 0.0, 0.0), empty_track(start, n)
+    method, track = SteppingMethod(int(FixedStep.CONTACT_DYNAMICS), 0.0, 0.0), empty_track(start, n)
     t, h_all, right = h * np.arange(n + 1), np.full(n, h), np.empty((count, d))
     for i in range(count):
         track.q[0], track.u[0] = start.q + dq[:, i], start.u + du[:, i]
