@@ -26,6 +26,36 @@ def test_classify_answers_with_the_keys_and_values_that_scripts_rely_on(scene, s
     assert math.copysign(1, answer["gamma"]) == {"none": 1, "negative": -1}.get(answer["branch"], 1)
 
 
+def test_classify_names_the_law_and_answers_for_coulomb_s_where_the_two_differ(capsys):
+    """A slip 60 degrees off the rod: law (7) jumps, Coulomb's law does not; straight on both stick."""
+    turned = ["classify", "spatial_rod", "--state", "theta=atan(2)", "slip=1", "heading=60*pi/180", "--set", "mu=2"]
+    assert run_json(capsys, *turned)["branch"] == "negative"
+    coulomb = run_json(capsys, *turned, "--law", "coulomb")
+    assert (coulomb["law"], [s["kind"] for s in coulomb["solutions"]]) == ("coulomb", ["open"])
+    assert main(turned) == 0
+    assert "law        projection, the paper's (7); in space not Coulomb's" in capsys.readouterr().out
+    assert main([*turned, "--law", "coulomb"]) == 0
+    assert "Coulomb's law admits no jump" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("state", ["paradox", "critical", "sliding"])
+def test_in_the_plane_coulomb_s_right_velocities_are_those_of_the_projection(state, capsys):
+    projection = run_json(capsys, "classify", "slender_rod", "--state", state)
+    coulomb = run_json(capsys, "classify", "slender_rod", "--state", state, "--law", "coulomb")
+    found = {s["kind"]: s for s in coulomb["solutions"]}
+    assert coulomb["u_minus"] == projection["u_minus"] == found["open"]["velocity"]
+    jumps = projection["limit_set"] != "point"
+    assert ("stick" in found) == jumps
+    assert not jumps or found["stick"]["velocity"] == pytest.approx(projection["u_tilde"], abs=1e-15)
+    assert (coulomb["kind"] == "family") == (projection["limit_set"] == "segment")
+
+
+@pytest.mark.parametrize("name", ["robot.xml", "models/robot.xml", "robot.urdf"])
+def test_a_robot_s_file_is_refused_by_what_is_read(name, capsys, tmp_path, monkeypatch):
+    line = assert_refused(["classify", name, "--state", "a"], capsys, tmp_path, monkeypatch)
+    assert "of files, those in TOML are read" in line
+
+
 @pytest.mark.parametrize(
     ("arguments", "branch"),
     [

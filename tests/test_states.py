@@ -251,3 +251,23 @@ def test_gamma_is_positive_negative_or_zero_as_the_names_of_the_states_say():
         sign = exact_sign(state.exact(derive(state.scene).gamma)).sign
         wanted = expected.get(name, Sign.ZERO)
         assert wanted is None or sign is wanted, (scene, name)
+
+
+def test_friction_on_one_coordinate_is_refused_whatever_the_configuration_and_says_what_helps():
+    x = Coordinate(name="x", unit="rad", sentence="angle")
+    scene = make_scene(
+        name="brake",
+        sentence="a hinged rod on a board that does not move",
+        source="a test",
+        coordinates=(x,),
+        parameters=(),
+        inertia=sp.Matrix([[1]]),
+        constraint=sp.cos(x.symbol) - sp.Rational(1, 2),
+        tangential_displacements=(sp.sin(x.symbol),),
+        friction=Segment(minus=1, plus=1),
+    )
+    for angle in ("pi/3", "-pi/3"):
+        with pytest.raises(
+            InputError, match=r"needs 2 coordinates at least.*this scene has 1: no configuration can do"
+        ):
+            make_state(scene, keys={"x": angle})

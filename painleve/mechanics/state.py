@@ -267,6 +267,12 @@ def _check(state: State) -> None:
         raise InputError(f"{where}: grad g vanishes there; choose another configuration")
     section = scene.contact.section
     if section.dimension:
+        if scene.dimension < 1 + section.dimension:
+            raise InputError(
+                f"{where}: friction needs {1 + section.dimension} coordinates at least, so that its directions vary "
+                f"independently of g (H3), and this scene has {scene.dimension}: no configuration can do; give what "
+                'the contact rubs against a coordinate of its own, or take the friction away (kind = "none")'
+            )
         if least_minor_sign(state.exact(d.delassus)) is not Sign.POSITIVE:
             raise InputError(
                 f"{where}: the tangential displacements do not vary independently of g there (H3); "

@@ -60,6 +60,7 @@ class Classification:
         return {
             "scene": limit.state.scene.name,
             "state": limit.state.label,
+            "law": "projection",
             "branch": self.branch.value,
             "reason": self.reason,
             "statement": self.statement,

@@ -12,6 +12,7 @@ from painleve.mechanics.scene_file import read_scene
 
 __all__ = ["SCENE_NAMES", "load_scene"]
 
+NOT_READ = (".xml", ".urdf", ".mjcf", ".sdf", ".json", ".yaml", ".yml", ".usd", ".py", ".h5", ".nc")
 SCENE_NAMES = (
     "slender_rod",
     "worn_tip_rod",
@@ -36,10 +37,10 @@ def load_scene(name: str | Path) -> Scene:
     if name in SCENE_NAMES:
         scene: Scene = import_module(f"painleve.mechanics.library.{name}").SCENE
         return scene
+    if Path(name).suffix in NOT_READ or (Path(name).suffix not in ("", ".toml") and os.sep not in str(name)):
+        raise InputError(f"no scene {str(name)!r}: of files, those in TOML are read, such as my_scene.toml")
     if isinstance(name, Path) or name.endswith(".toml") or os.sep in name:
         return read_scene(name)
-    if Path(name).suffix:
-        raise InputError(f"no scene {name!r}: of files, those in TOML are read, such as my_scene.toml")
     raise InputError(
         f"no scene {name!r}{nearest(name, SCENE_NAMES)}; the library has {', '.join(SCENE_NAMES)}, and a scene of your "
         "own is given by its file, such as my_scene.toml; `painleve new-scene` writes one"

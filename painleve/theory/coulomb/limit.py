@@ -86,13 +86,36 @@ class CoulombLimitSet:
         if self.kind == "undecided":
             raise ValueError(f"Coulomb's right velocities are undecided: {self.reason}")
         segments = [
-            sets.LineSegment(self._floats(j.velocity), self._floats(j.end)) for j in self.jumps if j.end is not None
+            sets.LineSegment(self.floats(j.velocity), self.floats(j.end)) for j in self.jumps if j.end is not None
         ]
-        points = [self._floats(jump.velocity) for jump in _isolated(self.jumps)]
+        points = [self.floats(jump.velocity) for jump in _isolated(self.jumps)]
         return (*segments, *([sets.Points(np.array(points))] if points else []))
 
-    def _floats(self, velocity: tuple[sp.Expr, ...]) -> np.ndarray:
-        return np.array([self.state.number(x) for x in velocity])
+    def floats(self, velocity: tuple[sp.Expr, ...]) -> np.ndarray:
+        """(d,) floats of a velocity of these, without negative zeros."""
+        return np.array([self.state.number(x) for x in velocity]) + 0.0
+
+    def as_dict(self) -> dict[str, object]:
+        return {
+            "scene": self.state.scene.name,
+            "state": self.state.label,
+            "law": "coulomb",
+            "kind": self.kind,
+            "reason": self.reason,
+            "gamma": self.gamma.value,
+            "sign_of_gamma": self.gamma.sign.name.lower(),
+            "u_minus": self.floats(self.state.u).tolist(),
+            "solutions": [self._as_dict(jump) for jump in self.jumps],
+        }
+
+    def _as_dict(self, jump: CoulombJump) -> dict[str, object]:
+        return {
+            "kind": jump.kind,
+            "impulse": [self.state.number(x) for x in jump.impulse],
+            "velocity": self.floats(jump.velocity).tolist(),
+            "multiplicity": jump.multiplicity,
+            "end": None if jump.end is None else self.floats(jump.end).tolist(),
+        }
 
 
 def coulomb_limit_set(state: State) -> CoulombLimitSet:
