@@ -6,9 +6,7 @@ above (docs/theory.md, section 4).
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterable
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -23,6 +21,7 @@ from painleve.core.reduce import PAIR, POINT, SEGMENT
 from painleve.core.sampling import BLOCK, Sampler
 from painleve.core.taylor import no_polynomials
 from painleve.errors import InputError, nearest
+from painleve.lanes import as_they_finish
 from painleve.sets import Bounds, excess_of_segment_from_profile
 from painleve.theory.domain import check_domain
 from painleve.theory.limit_set import LimitSet
@@ -253,27 +252,17 @@ def _has(problem: LocalProblem, branch: ContactMode) -> bool:
     return branch is ContactMode.FREE or branch in contact[problem.limit.state.scene.contact.section.dimension]
 
 
-def _lanes(stream: _Stream) -> Iterable[_SampleTally]:
-    """Tallies of all lanes, on threads, with a bounded number in flight."""
-    options = stream.options
-    blocks = -(-options.samples // BLOCK)
-    starts = iter(range(0, blocks, LANE_BLOCKS))
-    threads = options.threads or os.cpu_count() or 1
-    with ThreadPoolExecutor(threads) as pool:
-        pending: set[Future[_SampleTally]] = set()
-        while True:
-            for first in starts:
-                pending.add(pool.submit(stream.lane, first, min(LANE_BLOCKS, blocks - first)))
-                if len(pending) >= 2 * threads:
-                    break
-            if not pending:
-                return
-            done, pending = wait(pending, return_when=FIRST_COMPLETED)
-            for future in done:
-                tally = future.result()
-                if options.progress is not None:
-                    options.progress(int(tally.counts.sum()))
-                yield tally
+def _lanes(stream: _Stream) -> Iterator[_SampleTally]:
+    """Tallies of all lanes, on threads."""
+    options, blocks = stream.options, -(-stream.options.samples // BLOCK)
+
+    def lane(first: int) -> _SampleTally:
+        return stream.lane(first, min(LANE_BLOCKS, blocks - first))
+
+    for tally in as_they_finish(lane, range(0, blocks, LANE_BLOCKS), options.threads):
+        if options.progress is not None:
+            options.progress(int(tally.counts.sum()))
+        yield tally
 
 
 def _excess_of_limit(stream: _Stream, tally: _SampleTally) -> Attained:

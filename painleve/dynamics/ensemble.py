@@ -7,9 +7,7 @@ number of threads gives the same result, bit for bit, and memory does not grow w
 from __future__ import annotations
 
 import math
-import os
-from collections.abc import Callable, Generator, Mapping
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -23,6 +21,7 @@ from painleve.dynamics.scheme import Stepped
 from painleve.dynamics.schemes import scheme_for
 from painleve.dynamics.start import Start, as_start
 from painleve.errors import InputError
+from painleve.lanes import as_they_finish
 from painleve.mechanics.state import State
 
 __all__ = ["Ensemble", "Members", "run_ensemble", "wilson_interval"]
@@ -247,7 +246,7 @@ def _collect(task: _Task, threads: int | None, keep: bool, progress: Callable[[i
     tally, ending = _EnsembleTally(), Ending.REACHED_END
     width = (task.until or 1.0) / (BINS - 1)  # a jump may come up to one step after the end: the last bin
     kept = _empty_members(task.count) if keep else None
-    lanes = _lanes(task, threads or os.cpu_count() or 1)
+    lanes = as_they_finish(task.run, range(0, task.count, task.lane), threads)
     try:
         for first, members in lanes:
             bins = np.clip((members.time - task.start.t) / width, 0, BINS - 1).astype(np.int64)
@@ -300,23 +299,3 @@ def _jump_time(tally: _EnsembleTally, start: float, width: float) -> tuple[float
     middle = int(np.searchsorted(np.cumsum(tally.histogram), (jumps + 1) // 2))
     median = min(max(start + (middle + 0.5) * width, tally.first), tally.last)
     return float(tally.first), float(median), float(tally.last)
-
-
-def _lanes(task: _Task, threads: int) -> Generator[tuple[int, Members], None, None]:
-    """The lanes as they finish, with a bounded number in flight; what has not begun is dropped on closing."""
-    firsts = iter(range(0, task.count, task.lane))
-    pool = ThreadPoolExecutor(threads)
-    pending: set[Future[tuple[int, Members]]] = set()
-    try:
-        while True:
-            for first in firsts:
-                pending.add(pool.submit(task.run, first))
-                if len(pending) >= 2 * threads:
-                    break
-            if not pending:
-                return
-            done, pending = wait(pending, return_when=FIRST_COMPLETED)
-            for future in done:
-                yield future.result()
-    finally:
-        pool.shutdown(cancel_futures=True)
