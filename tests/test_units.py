@@ -40,8 +40,64 @@ def test_the_scene_that_new_scene_writes_agrees() -> None:
 
 def test_the_readme_s_own_scene_agrees() -> None:
     readme = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
-    (text,) = re.findall(r"```toml\n(.*?)```", readme, flags=re.DOTALL)
-    assert check_units(read(text)).open == ()
+    (text, *_) = re.findall(r"```toml\n(.*?)```", readme, flags=re.DOTALL)
+    assert check_units(read(text)).agreement is Agreement.AGREES
+
+
+LINK = """
+name = "link"
+sentence = "a uniform link on a joint, over a floor"
+[parameters]
+m = { unit = "kg", sentence = "mass", default = 3 }
+l = { unit = "m", sentence = "length", default = "2/5" }
+c = { unit = "N m s", sentence = "friction in the joint", default = "1/10" }
+mu = { unit = "1", sentence = "coefficient of friction", default = "1/2" }
+[mechanism]
+gravity = [0, 0, "-9.81"]
+[[body]]
+name = "link"
+parent = "world"
+position = [0, 0, "l/2"]
+mass = "m"
+centre = [0, 0, "-l/2"]
+inertia = ["m*l**2/12", "m*l**2/12", 0]
+[[body.joint]]
+name = "hip"
+kind = "revolute"
+axis = [0, -1, 0]
+damping = "c"
+force = "-c*u_hip"
+[contact]
+body = "link"
+point = [0, 0, "-l"]
+[friction]
+kind = "segment"
+mu = "mu"
+"""
+
+
+def test_of_a_mechanism_each_field_has_its_unit_and_what_follows_from_them_is_not_asked() -> None:
+    found = check_units(read(LINK))
+    assert found.agreement is Agreement.AGREES
+    named = {f.what for f in found.findings}
+    assert {"mass of link", "inertia of link", "damping of hip", "force of hip", "touching point of link"} <= named
+    assert not [name for name in named if "kinetic" in name]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "what"),
+    [
+        ('mass = "m"', 'mass = "l"', "mass of link"),
+        ('"m*l**2/12", "m*l**2/12"', '"m*l**2/12", "m*l/12"', "inertia of link"),
+        ('damping = "c"', 'damping = "m"', "damping of hip"),
+        ('force = "-c*u_hip', 'force = "-c*hip', "force of hip"),
+        ('point = [0, 0, "-l"]', 'point = [0, 0, "-m"]', "touching point of link"),
+        ("-c*u_hip", "c*u_hip*sin(t)", "force of hip"),
+    ],
+)
+def test_of_a_mechanism_a_formula_with_another_unit_than_its_field_is_named(old: str, new: str, what: str) -> None:
+    found = check_units(read(LINK.replace(old, new)))
+    assert [f.what for f in found.findings if f.agreement is Agreement.DISAGREES] == [what]
 
 
 # --- what does not agree ---------------------------------------------------------------------------------------------

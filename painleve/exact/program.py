@@ -14,7 +14,7 @@ import sympy as sp
 
 from painleve.exact.tape import Tape
 
-__all__ = ["Arithmetic", "Program", "Step", "make_program", "run"]
+__all__ = ["Arithmetic", "ElementaryStep", "Program", "make_program", "run"]
 
 UNARY = (
     sp.sin,
@@ -38,7 +38,7 @@ FOLDED = {sp.Min: "min", sp.Max: "max"}
 
 
 @dataclass(frozen=True)
-class Step:
+class ElementaryStep:
     """`operation` of the results of the steps `operands`; an "input" is a symbol and a "number" an exact value."""
 
     operation: str
@@ -50,7 +50,7 @@ class Step:
 class Program:
     """Steps in order, and which of them are the results that were asked for."""
 
-    steps: tuple[Step, ...]
+    steps: tuple[ElementaryStep, ...]
     outputs: tuple[int, ...]
 
     def depends(self, variables: Sequence[sp.Symbol]) -> list[frozenset[int]]:
@@ -99,9 +99,9 @@ def make_program(expressions: Sequence[sp.Expr], tape: Tape | None = None) -> Pr
 
 class _Writer:
     def __init__(self) -> None:
-        self.steps: list[Step] = []
+        self.steps: list[ElementaryStep] = []
         self.known: dict[sp.Basic, int] = {}
-        self._shared: dict[Step, int] = {}
+        self._shared: dict[ElementaryStep, int] = {}
 
     def place(self, expression: sp.Expr) -> int:
         if expression not in self.known:
@@ -109,7 +109,7 @@ class _Writer:
         return self.known[expression]
 
     def emit(self, operation: str, *operands: int, value: sp.Expr | None = None) -> int:
-        step = Step(operation, operands, value)
+        step = ElementaryStep(operation, operands, value)
         if step not in self._shared:
             self.steps.append(step)
             self._shared[step] = len(self.steps) - 1

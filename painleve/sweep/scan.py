@@ -112,7 +112,7 @@ def scan_friction(
     chosen = _ranges(scene, ranges or {}, keys or {})
     numbers = make_contact_numbers(scene)
     configurations = make_configurations(scene, list(chosen), state, keys=keys, parameters=parameters)
-    search = _Search(numbers, configurations, np.array(list(chosen.values())), others_above)
+    search = _Descent(numbers, configurations, np.array(list(chosen.values())), others_above)
     sample = search.sample(points, seed)
     least = {sense: search.descend(sample, sense, seed, list(chosen)) for sense in SENSES}
     admitted = sample.admitted
@@ -170,7 +170,7 @@ class _Sample:
     admitted: np.ndarray
 
 
-class _Search:
+class _Descent:
     """The box of the ranges, as the cube [-1, 1]^s."""
 
     def __init__(

@@ -12,6 +12,7 @@ import sympy as sp
 from painleve.exact.parse import parse_expression
 from painleve.mechanics.scene import Scene
 from painleve.mechanics.units.dimension import PURE, Disagreement, Unit, read_unit, unit_of
+from painleve.mechanics.units.mechanism import fields_of
 
 __all__ = ["Agreement", "UnitFinding", "UnitsCheck", "check_units"]
 
@@ -118,12 +119,37 @@ def _judged(quantity: _Quantity) -> UnitFinding:
 
 
 def _quantities(scene: Scene, stated: Mapping[str, Unit]) -> Iterator[_Quantity]:
-    second, metre, joule = (read_unit(text) for text in ("s", "m", "J"))
+    second = read_unit("s")
     rate = {c.name: stated[f"coordinate {c.name}"].times(second, Fraction(-1)) for c in scene.coordinates}
     parameters = {p.symbol: stated[f"parameter {p.name}"] for p in scene.parameters}
     known = {sp.Symbol("t", real=True): second} | parameters
     known |= {c.symbol: stated[f"coordinate {c.name}"] for c in scene.coordinates}
     known |= {c.velocity: rate[c.name] for c in scene.coordinates}
+    keys = {k.symbol: stated[f"key {k.name}"] for k in scene.keys} | parameters
+    if scene.tree is None:
+        yield from _mechanics(scene, rate, known)
+        yield from _places(scene, stated, rate, keys)
+    else:
+        for what, formula, unit in fields_of(scene.tree):
+            wanted = read_unit(unit)
+            yield _Quantity(what=what, expression=formula, wanted=wanted, words="its field's unit", of=known)
+    for name, rule in scene.contact_parameters.items():
+        wanted, words = stated[f"parameter {name}"], f"the parameter {name}"
+        yield _Quantity(what=f"contact parameter {name}", expression=rule, wanted=wanted, words=words, of=keys)
+    if scene.friction is not None:
+        for x in scene.friction.expressions:
+            yield _Quantity(what=f"friction {str(x)[:40]}", expression=x, wanted=PURE, words="a pure number", of=known)
+    yield from _defaults(scene, stated)
+    if scene.outline is not None:
+        points = [x for point in scene.outline.points for x in point]
+        for expression in dict.fromkeys([*points, scene.outline.floor]):
+            what, metre = f"outline {str(expression)[:40]}", read_unit("m")
+            yield _Quantity(what=what, expression=expression, wanted=metre, words="a place in metres", of=known)
+
+
+def _mechanics(scene: Scene, rate: Mapping[str, Unit], known: Mapping[sp.Symbol, Unit]) -> Iterator[_Quantity]:
+    """Height, kinetic energy, forces and tangential displacements."""
+    metre, joule = read_unit("m"), read_unit("J")
     length = _first_unit(scene.constraint, known, metre)
     energy = _energy(scene, rate, known, joule)
     yield _Quantity(what="height g", expression=scene.constraint, wanted=length, words="a length", of=known)
@@ -148,32 +174,18 @@ def _quantities(scene: Scene, stated: Mapping[str, Unit]) -> Iterator[_Quantity]
             words = f"a length over {c.unit}"
             what = f"tangential displacement {k + 1} with {c.name}"
             yield _Quantity(what=what, expression=scene.tangents[i, k], wanted=wanted, words=words, of=known)
-    if scene.friction is not None:
-        for x in scene.friction.expressions:
-            yield _Quantity(what=f"friction {str(x)[:40]}", expression=x, wanted=PURE, words="a pure number", of=known)
-    yield from _rules(scene, stated, rate, parameters)
-    yield from _defaults(scene, stated)
-    if scene.outline is not None:
-        points = [x for point in scene.outline.points for x in point]
-        for expression in dict.fromkeys([*points, scene.outline.floor]):
-            what = f"outline {str(expression)[:40]}"
-            yield _Quantity(what=what, expression=expression, wanted=metre, words="a place in metres", of=known)
 
 
-def _rules(
-    scene: Scene, stated: Mapping[str, Unit], rate: Mapping[str, Unit], parameters: Mapping[sp.Symbol, Unit]
+def _places(
+    scene: Scene, stated: Mapping[str, Unit], rate: Mapping[str, Unit], keys: Mapping[sp.Symbol, Unit]
 ) -> Iterator[_Quantity]:
     """What the state keys are put into."""
-    keys = {k.symbol: stated[f"key {k.name}"] for k in scene.keys} | dict(parameters)
     for name, rule in scene.placement.items():
         wanted, words = stated[f"coordinate {name}"], f"the coordinate {name}"
         yield _Quantity(what=f"placement of {name}", expression=rule, wanted=wanted, words=words, of=keys)
     for name, rule in scene.velocity.items():
         what, words = f"velocity of {name}", f"the velocity of {name}"
         yield _Quantity(what=what, expression=rule, wanted=rate[name], words=words, of=keys)
-    for name, rule in scene.contact_parameters.items():
-        wanted, words = stated[f"parameter {name}"], f"the parameter {name}"
-        yield _Quantity(what=f"contact parameter {name}", expression=rule, wanted=wanted, words=words, of=keys)
 
 
 def _defaults(scene: Scene, stated: Mapping[str, Unit]) -> Iterator[_Quantity]:
