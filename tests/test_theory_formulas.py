@@ -1,4 +1,4 @@
-"""Formulas of docs/theory.md, sections 2, 3, 4, 6, 9 and 10, by computer algebra and by exact enumeration."""
+"""Formulas of docs/theory.md, sections 1, 2, 3, 4, 6, 9 and 10, by computer algebra and by exact enumeration."""
 
 from __future__ import annotations
 
@@ -23,6 +23,34 @@ CONIC = sp.Matrix([nu * (1 - t**2) / D, 2 * nu * t / D])
 
 def vanishes(expression: sp.Expr) -> bool:
     return sp.simplify(expression) == 0
+
+
+# --- section 1 -------------------------------------------------------------------------------------------------------
+
+
+def test_1_5_moments_about_another_point_and_the_inertia_between_two_joints() -> None:
+    """Sums over four points of mass, of which the formulas know the three moments alone."""
+    rng = np.random.default_rng(5)
+
+    def vector() -> sp.Matrix:
+        return sp.Matrix(rng.integers(-9, 10, 3).tolist())
+
+    def about(point: sp.Matrix) -> tuple[sp.Expr, sp.Matrix, sp.Matrix]:
+        arms = [(m, x - point) for m, x in parts]
+        second = [m * (y.dot(y) * sp.eye(3) - y * y.T) for m, y in arms]
+        return sum(m for m, _ in parts), sum((m * y for m, y in arms), sp.zeros(3, 1)), sum(second, sp.zeros(3, 3))
+
+    parts = [(sp.Integer(m), vector()) for m in (1, 2, 3, 5)]
+    o_j, o_k, e_j, e_k = vector(), vector(), vector(), vector()
+    (m, h, J), (_, moved, turned), r = about(o_k), about(o_j), o_k - o_j
+    assert moved == h + m * r
+    assert turned == J + (2 * r.dot(h) + m * r.dot(r)) * sp.eye(3) - r * h.T - h * r.T - m * r * r.T
+    velocity = {"revolute": lambda e, o, x: e.cross(x - o), "prismatic": lambda e, o, x: e}
+    wrench = {"revolute": (e_k.cross(h), J * e_k), "prismatic": (m * e_k, h.cross(e_k))}
+    for far, (F, N) in wrench.items():
+        for near, along in {"revolute": N + r.cross(F), "prismatic": F}.items():
+            whole = sum(m * velocity[near](e_j, o_j, x).dot(velocity[far](e_k, o_k, x)) for m, x in parts)
+            assert whole == e_j.dot(along)
 
 
 # --- section 2 -------------------------------------------------------------------------------------------------------

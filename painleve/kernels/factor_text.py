@@ -2,7 +2,8 @@
 
 From the last coordinate to the first, as a tree of joints is walked from its leaves: then no zero of M fills up, for a
 joint couples only with those between it and the base (R. Featherstone, Rigid Body Dynamics Algorithms, Springer 2008,
-section 6.5). For other matrices the entries that fill up are worked out here, before there are numbers.
+section 6.5). For other matrices the entries that fill up are worked out here, before there are numbers
+(docs/theory.md, section 1.6).
 """
 
 from __future__ import annotations

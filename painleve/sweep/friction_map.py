@@ -44,7 +44,7 @@ def frictions(numbers: ContactNumbers, q: np.ndarray, p: np.ndarray, *, others_a
     """Critical friction and the sign of gamma by the sense of the slip at configurations q (n, d), parameters p (n, m).
 
     A slip v_t > 0 takes the friction impulse s = -mu, so it is paradoxical where a - mu b < 0, and mu_c = a/b if b > 0;
-    for v_t < 0 the sign of b is the other one (docs/theory.md, sections 1 and 6).
+    for v_t < 0 the sign of b is the other one (docs/theory.md, section 1.6).
     """
     k = numbers.scene.contact.section.dimension
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):

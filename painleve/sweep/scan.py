@@ -1,4 +1,7 @@
-"""The least critical friction over a mechanism's range, where it is, and how much of the range is paradoxical."""
+"""The least critical friction over a mechanism's range, where it is, and how much of the range is paradoxical.
+
+(docs/theory.md, section 1.6.)
+"""
 
 from __future__ import annotations
 

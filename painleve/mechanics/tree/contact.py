@@ -1,4 +1,7 @@
-"""Height over a plane, its gradient and the tangential Jacobian of a mechanism's touching point, on a tape."""
+"""Height over a plane, its gradient and the tangential Jacobian of a mechanism's touching point, on a tape.
+
+(docs/theory.md, section 1.5.)
+"""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """M(q) and f(t, q, u) of a mechanism on a tape.
 
 M by composite bodies (R. Featherstone, Rigid Body Dynamics Algorithms, Springer 2008, section 6.2), the velocity terms
-and gravity by the recursive Newton-Euler equations (section 5.3), both about the joints' anchors in the world's axes.
+and gravity by the recursive Newton-Euler equations (section 5.3), both about the joints' anchors in the world's axes
+(docs/theory.md, section 1.5).
 """
 
 from __future__ import annotations
