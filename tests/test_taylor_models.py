@@ -18,6 +18,7 @@ from flint import arb
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from painleve.asymptotics.certify.cover import Cover
 from painleve.asymptotics.certify.taylor_models import TaylorModel, expand, make_models, taylor_order
 from painleve.asymptotics.local import BITS, LocalProblem, make_local_problem
 from painleve.asymptotics.member import base_balls
@@ -277,3 +278,36 @@ def test_values_and_gradients_of_the_polynomials_in_floats_are_those_of_the_poly
             assert abs(values[i, j] - float(written.subs(at))) <= scale
             for s, symbol in enumerate(symbols):
                 assert abs(gradients[i, s, j] - float(sp.diff(written, symbol).subs(at))) <= scale
+
+
+@given(CASES)
+@settings(max_examples=15)
+def test_a_cover_has_every_point_of_the_ball_in_a_box_that_bounds_the_functions_there(case):
+    variables, order, radius, first, second = case
+    functions = [model(terms, variables, order, radius) for terms in (first, second)]
+    cover = Cover(variables)
+    low, high = cover.bounds(functions)
+    random = np.random.default_rng(3)
+    places = random.normal(size=(60, variables))
+    places *= np.minimum(1.0, 1.3 * random.uniform(size=(60, 1))) / np.linalg.norm(places, axis=1)[:, None]
+    for xi in places:
+        (box,) = np.flatnonzero(np.all(np.abs(cover.xi - xi) <= cover.half * (1 + 1e-12), axis=1))[:1]
+        assert cover.nearest[box] <= np.linalg.norm(xi)
+        for j, terms in enumerate((first, second)):
+            right = float(value(terms, tuple(radius * xi)).mid())
+            assert low[box, j] <= right + 1e-12
+            assert right <= high[box, j] + 1e-12
+
+
+def test_a_cover_bounds_narrowly_and_leaves_out_what_is_not_wanted():
+    """x over [-1, 1] in 256 boxes: each bound is within a cell of the value in its middle."""
+    cover = Cover(1)
+    assert len(cover.xi) == 256
+    low, high = cover.bounds([model({(1,): 1}, 1, 2, 1.0)])
+    assert np.all(np.abs(0.5 * (low + high) - cover.xi) < 1e-12)
+    assert np.all(high - low < 2.0 * cover.half + 1e-12)
+    cover.keep(high[:, 0] >= 0.5)
+    assert 64 <= len(cover.xi) <= 66
+    assert cover.xi.min() > 0.49
+    assert np.all(Cover(2).nearest <= 1.0)
+    assert len(Cover(0).xi) == 1
