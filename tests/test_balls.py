@@ -96,6 +96,24 @@ def test_a_ball_at_a_point_contains_the_value_that_mpmath_finds(expr: sympy.Expr
     assert contains(enclosure, mpmath.re(value))
 
 
+@pytest.mark.parametrize(
+    ("product", "exact"),
+    [
+        (1 / (X * Y), Fraction(1, 6)),
+        (-1 / (X * Y), Fraction(-1, 6)),
+        (-X * Y, Fraction(-6)),
+        (-X / Y, Fraction(-2, 3)),
+        (1 / (X**2 * Y**3), Fraction(1, 108)),
+        (-3 * X / (5 * Y**2), Fraction(-2, 15)),
+        (-1 / X**2, Fraction(-1, 4)),
+    ],
+)
+def test_products_and_quotients_have_their_sign_with_and_without_a_numerator(product: sympy.Expr, exact: Fraction):
+    found = ball(product, {X: arb(2), Y: arb(3)})
+    assert found.overlaps(arb(exact.numerator) / exact.denominator)
+    assert found.rad() < 1e-30
+
+
 @given(
     EXPRESSIONS,
     FRACTIONS,

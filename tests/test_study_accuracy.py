@@ -82,6 +82,7 @@ def test_a_table_aligns_its_columns_and_refuses_ragged_rows():
         text_table(("a", "b"), [("1",)])
 
 
+@pytest.mark.slow
 def test_every_method_is_measured_and_every_run_is_in_the_table(speed):
     result, dataset = speed
     measured = {str(name).split(",")[0] for name in dataset["series"].values}
@@ -92,6 +93,7 @@ def test_every_method_is_measured_and_every_run_is_in_the_table(speed):
     assert [line.split()[-1] for line in body] == [row["outcome"] for row in result.data["rows"]]
 
 
+@pytest.mark.slow
 def test_sampled_values_bound_d_H_from_their_side_and_mislead_at_the_hard_state_only_by_being_read(speed):
     """A misleading run is a true bound: at `double_zero` it lies above the enclosure, for it bounds e(A, A_eps)."""
     rows = [r for r in speed[0].data["rows"] if r["state"] == "slender_rod double_zero"]
@@ -101,6 +103,7 @@ def test_sampled_values_bound_d_H_from_their_side_and_mislead_at_the_hard_state_
     assert all(r["value"] > 2 * (reference["d_H"] + reference["half_width"]) for r in misleading)
 
 
+@pytest.mark.slow
 def test_optimise_and_certify_agree_within_what_certify_proves(speed):
     for row in speed[0].data["rows"]:
         reference = next(r for r in speed[0].data["references"] if r["state"] == row["state"])
@@ -111,6 +114,7 @@ def test_optimise_and_certify_agree_within_what_certify_proves(speed):
             assert row["error"] <= 1.01 * resolved + 1e-9
 
 
+@pytest.mark.slow
 def test_outcomes_are_the_codes_that_their_errors_deserve(speed):
     _, dataset = speed
     misleading = dataset["outcome"].values == 1 + RUN_OUTCOMES.index("misleading")
@@ -118,6 +122,7 @@ def test_outcomes_are_the_codes_that_their_errors_deserve(speed):
     np.testing.assert_array_equal(misleading, (value > 2 * reference) | (value < reference / 2))
 
 
+@pytest.mark.slow
 def test_the_sampled_bound_at_the_hard_state_grows_while_witnesses_shrink(fail):
     dataset = load(fail[1] / "sampled_bound.h5").sortby("eps", ascending=False)
     assert np.all(np.diff(dataset["sampled_upper"].values[-1]) > 0.0)
@@ -126,6 +131,7 @@ def test_the_sampled_bound_at_the_hard_state_grows_while_witnesses_shrink(fail):
     assert dataset["sampled_upper"].values[0, -1] == pytest.approx(dataset["half_jump"].item(), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_plain_doubles_lose_gamma_like_the_inverse_square_of_eps_and_the_toolkit_does_not(fail):
     dataset = load(fail[1] / "rounding.h5").sortby("eps", ascending=False)
     eps = dataset["eps"].values
@@ -137,6 +143,7 @@ def test_plain_doubles_lose_gamma_like_the_inverse_square_of_eps_and_the_toolkit
     assert np.all(dataset["kept_error_farthest"].values < 1e-9)
 
 
+@pytest.mark.slow
 def test_d_H_is_that_of_the_wrong_side_until_eps_resolves_the_gap(fail):
     dataset = load(fail[1] / "near_critical.h5").isel(case=0)
     read = np.fmax(dataset["excess_Aeps_A_lower"], dataset["excess_A_Aeps_upper"])
@@ -150,6 +157,7 @@ def test_d_H_is_that_of_the_wrong_side_until_eps_resolves_the_gap(fail):
         assert np.all(above[i][eps < np.sqrt(own) / 10] < 3.0 * eps[eps < np.sqrt(own) / 10])
 
 
+@pytest.mark.slow
 def test_at_isolated_states_the_excess_of_A_is_proved_large_only_once_eps_resolves_the_gap(fail):
     dataset = load(fail[1] / "near_critical.h5").isel(case=1)
     gap, eps, half = dataset["gap"].values, dataset["eps"].values, dataset["half_jump"].values
@@ -162,6 +170,7 @@ def test_at_isolated_states_the_excess_of_A_is_proved_large_only_once_eps_resolv
         assert np.all(lower[eps > 2.0 * gap[i]] < 0.9 * half[i])
 
 
+@pytest.mark.slow
 def test_advice_is_the_fastest_run_that_is_good_enough(fail):
     for row in fail[0].data["methods"]:
         assert row["number"]["error"] <= 1e-2

@@ -130,6 +130,7 @@ def test_a_method_that_cannot_go_on_is_kept_as_a_failed_run() -> None:
     assert one["seconds"].values[run] > 0.0
 
 
+@pytest.mark.slow
 def test_a_quick_run_makes_every_file_and_keeps_every_run(finished: tuple[StudyResult, Path]) -> None:
     result, folder = finished
     assert {p.name for p in result.files} == {p.name for p in folder.iterdir()}
@@ -139,6 +140,7 @@ def test_a_quick_run_makes_every_file_and_keeps_every_run(finished: tuple[StudyR
     assert sum(row["runs"] for row in result.data["rows"]) == dataset["error_upper"].size
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("problem", list(BY_NAME))
 @pytest.mark.parametrize("scheme", [s for s in SCHEME_NAMES if s not in ("event_driven", "compliant")])
 def test_every_fixed_step_scheme_is_of_order_one_where_contacts_change(
@@ -150,6 +152,7 @@ def test_every_fixed_step_scheme_is_of_order_one_where_contacts_change(
     assert row["stated_order"] == load_scheme(scheme).order
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("problem", list(BY_NAME))
 def test_a_compliant_contact_converges_unless_it_rebounds(problem: str, finished: tuple[StudyResult, Path]) -> None:
     (row,) = [r for r in finished[0].data["rows"] if (r["motion"], r["scheme"]) == (problem, "compliant")]

@@ -34,6 +34,7 @@ def rod(**keys: object) -> State:
     return make_state(load_scene("spatial_rod"), keys={"theta": "atan(2)", **keys})
 
 
+@pytest.mark.slow
 def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyResult, Path]) -> None:
     result, folder = finished
     assert {path.name for path in folder.iterdir()} == {"laws.h5", "laws.pdf", "laws.png"}
@@ -41,6 +42,7 @@ def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyRe
     assert all(path.stat().st_size > 10_000 for path in result.files)
 
 
+@pytest.mark.slow
 def test_the_closed_forms_hold_on_the_whole_map_and_exact_counts_agree(finished: tuple[StudyResult, Path]) -> None:
     rows = finished[0].data["rows"]
     assert [row["edges_missed"] for row in rows] == [None, None, None, 0] * 2
@@ -48,6 +50,7 @@ def test_the_closed_forms_hold_on_the_whole_map_and_exact_counts_agree(finished:
     assert "at all but 0 points" in finished[0].status
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("row", "largest", "three"), [(3, 1.08, 0.064), (7, 1.66, 0.037)])
 def test_the_tangential_figures_are_those_expected(
     row: int, largest: float, three: float, finished: tuple[StudyResult, Path]

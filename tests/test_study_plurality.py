@@ -202,6 +202,7 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Pat
     return plurality.run(folder, quick=True), folder
 
 
+@pytest.mark.slow
 def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyResult, Path]) -> None:
     result, folder = finished
     names = {path.name for path in folder.iterdir()}
@@ -212,6 +213,7 @@ def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyRe
             load(path)
 
 
+@pytest.mark.slow
 def test_both_outcomes_are_found_in_every_decade(finished: tuple[StudyResult, Path]) -> None:
     wide = [row for row in finished[0].data["decades"] if row["decades"] == 1.0]
     assert len(wide) >= 6
@@ -219,6 +221,7 @@ def test_both_outcomes_are_found_in_every_decade(finished: tuple[StudyResult, Pa
         assert 0.0 < row["interval"][0] < row["interval"][1] < 1.0
 
 
+@pytest.mark.slow
 def test_jumps_tend_to_the_exact_instant(finished: tuple[StudyResult, Path]) -> None:
     data = finished[0].data
     assert data["instant"] == pytest.approx(0.81455, abs=5e-6)
@@ -229,6 +232,7 @@ def test_jumps_tend_to_the_exact_instant(finished: tuple[StudyResult, Path]) -> 
         assert delays[0] < 0.1 * delays[-1]
 
 
+@pytest.mark.slow
 def test_measured_fractions_differ_from_the_map_by_no_more_than_chance(finished: tuple[StudyResult, Path]) -> None:
     for contact in ("strict", "kept"):
         fit = finished[0].data["fits"][contact]
@@ -236,11 +240,13 @@ def test_measured_fractions_differ_from_the_map_by_no_more_than_chance(finished:
         assert fit["p_value"] > 1e-3
 
 
+@pytest.mark.slow
 def test_where_the_map_has_no_jam_none_is_seen(finished: tuple[StudyResult, Path]) -> None:
     for contact in ("strict", "kept"):
         assert finished[0].data["fits"][contact]["jams_where_the_map_has_none"] == 0
 
 
+@pytest.mark.slow
 def test_small_errors_leave_one_end_of_A_and_large_ones_reach_both(
     finished: tuple[StudyResult, Path],
 ) -> None:
@@ -254,6 +260,7 @@ def test_small_errors_leave_one_end_of_A_and_large_ones_reach_both(
         assert last["excess_of_A"] < 0.05 < 0.5 < rows[state, least, ratios[0]]["excess_of_A"]
 
 
+@pytest.mark.slow
 def test_every_scheme_jumps_at_the_inconsistent_state_and_event_driven_integration_stops(
     finished: tuple[StudyResult, Path],
 ) -> None:

@@ -13,6 +13,8 @@ from painleve.store import load
 from painleve.theory.classification import classify
 from studies.study import StudyResult
 
+pytestmark = pytest.mark.slow  # the study, run whole
+
 SCENE_NAMES = theorem1.SCENES
 UNMAPPED = {f"gamma_map_spatial_rod_ellipse.{suffix}" for suffix in ("h5", "pdf", "png")}  # no one coefficient
 ROOTS = [
