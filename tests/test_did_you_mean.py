@@ -47,7 +47,13 @@ TYPED = {
         ["classify", "slender_rod", "--state", "theta"],
         "(it is a state key: give theta=EXPRESSION)",
     ),
-    "a file of another kind": (["classify", "robot.xml", "--state", "x"], "of files, those in TOML are read"),
+    "a file of another kind": (
+        ["classify", "robot.xml", "--state", "x"],
+        "my_scene.toml; `painleve import` writes one",
+    ),
+    "a law": (["classify", *ROD, "--law", "coulom"], "did you mean coulomb?"),
+    "an axis of a map": (["map", "slender_rod", "--over", "thta=0:1"], "'thta' (did you mean theta?)"),
+    "a range of a scan": (["scan", "slender_rod", "--range", "thta=0,1"], "'thta' (did you mean theta?)"),
 }
 
 

@@ -10,6 +10,7 @@ import pytest
 
 import painleve
 from painleve.sets import Cloud, hausdorff
+from painleve.sweep.scan import scan_friction
 
 LONGEST = 200
 ROD = "slender_rod"
@@ -124,6 +125,10 @@ RESULTS: dict[str, tuple[Callable[[], object], str]] = {
     "Verdict": (
         lambda: painleve.judge(classification(), [evidence(1e-2), evidence()]),
         "Verdict(negative, proved, slope 1)",
+    ),
+    "Scan": (
+        lambda: scan_friction(painleve.load_scene(ROD), ranges={"theta": ("1/10", "3/2")}, points=1000),
+        "Scan('slender_rod', 1000 points: mu_c ≤ 1.33333, paradoxical ... ± ...)",
     ),
     "Hausdorff": (
         lambda: hausdorff(Cloud([[0.0, 0.0, 0.0]]), limit().point_set),

@@ -62,6 +62,12 @@ class Scan:
     admitted: Share
     points: int
 
+    def __repr__(self) -> str:
+        best, share = self.overall, self.paradoxical
+        least = f"mu_c ≤ {best.upper:.6g}" if best else "no critical friction"
+        found = f"{least}, paradoxical {share.value:.3g} ± {share.error:.1g}"
+        return f"Scan({self.scene.name!r}, {self.points} points: {found})"
+
     @property
     def overall(self) -> Least | None:
         found = [x for x in self.least.values() if x is not None]

@@ -12,7 +12,8 @@ from painleve.mechanics.scene_file import read_scene
 
 __all__ = ["SCENE_NAMES", "load_scene"]
 
-NOT_READ = (".xml", ".urdf", ".mjcf", ".sdf", ".json", ".yaml", ".yml", ".usd", ".py", ".h5", ".nc")
+ROBOTS = (".xml", ".urdf", ".mjcf")
+NOT_READ = (*ROBOTS, ".sdf", ".json", ".yaml", ".yml", ".usd", ".py", ".h5", ".nc")
 SCENE_NAMES = (
     "slender_rod",
     "worn_tip_rod",
@@ -38,7 +39,8 @@ def load_scene(name: str | Path) -> Scene:
         scene: Scene = import_module(f"painleve.mechanics.library.{name}").SCENE
         return scene
     if Path(name).suffix in NOT_READ or (Path(name).suffix not in ("", ".toml") and os.sep not in str(name)):
-        raise InputError(f"no scene {str(name)!r}: of files, those in TOML are read, such as my_scene.toml")
+        robot = "; `painleve import` writes one from a robot's file" if Path(name).suffix in ROBOTS else ""
+        raise InputError(f"no scene {str(name)!r}: of files, those in TOML are read, such as my_scene.toml{robot}")
     if isinstance(name, Path) or name.endswith(".toml") or os.sep in name:
         return read_scene(name)
     raise InputError(
