@@ -27,7 +27,17 @@ from painleve.errors import InputError
 if TYPE_CHECKING:
     from painleve.mechanics.scene import Scene
 
-__all__ = ["NOT_RUN", "PROVENANCE", "check_schema", "check_writable", "flags", "load", "provenance", "save"]
+__all__ = [
+    "NOT_RUN",
+    "PROVENANCE",
+    "check_schema",
+    "check_writable",
+    "flags",
+    "labels_of",
+    "load",
+    "provenance",
+    "save",
+]
 
 NOT_RUN = 0  # the code of a point that nobody computed, so that an outer merge can fill codes and keep them integers
 PROVENANCE = (
@@ -50,6 +60,13 @@ def flags(labels: Sequence[str]) -> dict[str, object]:
     """CF attributes of a code: 0 is `not_run`, the labels count from 1. Store such a variable as int8."""
     values = np.arange(len(labels) + 1, dtype=np.int8)
     return {"flag_values": values, "flag_meanings": " ".join(["not_run", *labels]), "units": "1"}
+
+
+def labels_of(code: xr.DataArray) -> np.ndarray:
+    """The meanings of a variable of codes, in its shape."""
+    values = np.atleast_1d(code.attrs["flag_values"]).tolist()
+    meanings = dict(zip(values, code.attrs["flag_meanings"].split(), strict=True))
+    return np.vectorize(meanings.__getitem__, otypes=[object])(code.values)
 
 
 def provenance(*, scene: Scene | str, scene_digest: str, seed: int, command: str | None = None) -> dict[str, str]:

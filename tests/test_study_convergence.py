@@ -1,16 +1,17 @@
-"""The distance of graphs, the references, and the quick study of convergence."""
+"""The distance of graphs, the references, and the study of convergence on little."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
+from figure_checks import assert_no_two_entries_share_a_mark
 from scipy.integrate import solve_ivp
 
-import studies.convergence.claim as convergence
 from painleve.dynamics.graph_distance import graph_distance, velocity_graph
 from painleve.dynamics.schemes import SCHEME_NAMES, load_scheme
 from painleve.dynamics.simulate import simulate
@@ -18,19 +19,30 @@ from painleve.dynamics.start import as_start
 from painleve.errors import InputError
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
-from painleve.store import load
-from studies.convergence.measure import MotionEffort, sweep_convergence
+from painleve.plotting import draw
+from studies.convergence.dataset import sweep_convergence
+from studies.convergence.figures import DRAWINGS, SCHEMES
+from studies.convergence.measure import QUICK
 from studies.convergence.motions import PROBLEMS, make_reference
-from studies.study import StudyResult
+from studies.convergence.report import report
+from studies.convergence.runs import MotionEffort
 
 BY_NAME = {p.name: p for p in PROBLEMS}
 COLLISIONS = ("point_impact", "point_fall", "rod_impact", "arm_impact", "rod_fall")
 
 
+LITTLE = replace(QUICK, tolerances=(1e-6,), instants=5000)
+
+
 @pytest.fixture(scope="module")
-def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path]:
-    folder = tmp_path_factory.mktemp("convergence")
-    return convergence.run(folder, quick=True), folder
+def dataset() -> xr.Dataset:
+    return sweep_convergence(effort=LITTLE, command="test")
+
+
+@pytest.fixture(scope="module")
+def rows(dataset: xr.Dataset) -> list[dict[str, Any]]:
+    found: Any = report({"convergence": dataset}).data["rows"]
+    return found
 
 
 def test_a_jump_shifted_by_a_step_costs_the_step_and_not_its_height() -> None:
@@ -130,32 +142,38 @@ def test_a_method_that_cannot_go_on_is_kept_as_a_failed_run() -> None:
     assert one["seconds"].values[run] > 0.0
 
 
-@pytest.mark.slow
-def test_a_quick_run_makes_every_file_and_keeps_every_run(finished: tuple[StudyResult, Path]) -> None:
-    result, folder = finished
-    assert {p.name for p in result.files} == {p.name for p in folder.iterdir()}
-    assert sorted(p.suffix for p in result.files) == [".h5", ".pdf", ".png"]
-    dataset = load(folder / "convergence.h5")
-    assert len(result.data["rows"]) == len(PROBLEMS) * len(SCHEME_NAMES)
-    assert sum(row["runs"] for row in result.data["rows"]) == dataset["error_upper"].size
+def test_every_run_is_kept_and_the_worst_of_a_level_is_marked(dataset: xr.Dataset, rows: list[dict[str, Any]]) -> None:
+    assert len(rows) == len(PROBLEMS) * len(SCHEME_NAMES)
+    assert sum(row["runs"] for row in rows) == dataset["error_upper"].size
+    one = dataset.sel(problem="point_fall")
+    own = one.isel(run=np.flatnonzero(one["run_scheme"].values == "moreau_jean"))
+    for level in range(LITTLE.levels):
+        here = own.isel(run=np.flatnonzero(own["level"].values == level))
+        assert here["worst"].values.tolist() == (here["error_upper"] == here["error_upper"].max()).values.tolist()
 
 
-@pytest.mark.slow
+def test_marks_of_schemes_that_coincide_can_all_be_seen_and_the_theorems_are_named(dataset: xr.Dataset) -> None:
+    figure = draw(dataset, DRAWINGS)
+    assert_no_two_entries_share_a_mark(figure)
+    sizes = [mark.size for mark in SCHEMES.values()]
+    assert len(set(sizes[:5])) == 5  # schemes of fixed step agree on the point mass
+    assert all(number in figure.get_suptitle() for number in ("[5]", "[9]", "[15]"))
+
+
 @pytest.mark.parametrize("problem", list(BY_NAME))
 @pytest.mark.parametrize("scheme", [s for s in SCHEME_NAMES if s not in ("event_driven", "compliant")])
 def test_every_fixed_step_scheme_is_of_order_one_where_contacts_change(
-    problem: str, scheme: str, finished: tuple[StudyResult, Path]
+    problem: str, scheme: str, rows: list[dict[str, Any]]
 ) -> None:
-    (row,) = [r for r in finished[0].data["rows"] if (r["motion"], r["scheme"]) == (problem, scheme)]
+    (row,) = [r for r in rows if (r["motion"], r["scheme"]) == (problem, scheme)]
     assert row["verdict"] == "as_expected"
     assert row["order"] == pytest.approx(1.0, abs=0.15)  # four levels: the standard errors reach 0.1
     assert row["stated_order"] == load_scheme(scheme).order
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("problem", list(BY_NAME))
-def test_a_compliant_contact_converges_unless_it_rebounds(problem: str, finished: tuple[StudyResult, Path]) -> None:
-    (row,) = [r for r in finished[0].data["rows"] if (r["motion"], r["scheme"]) == (problem, "compliant")]
+def test_a_compliant_contact_converges_unless_it_rebounds(problem: str, rows: list[dict[str, Any]]) -> None:
+    (row,) = [r for r in rows if (r["motion"], r["scheme"]) == (problem, "compliant")]
     assert row["verdict"] == ("does_not_converge" if problem in COLLISIONS else "as_expected")
 
 

@@ -1,64 +1,52 @@
-"""The study of the two laws, in its quick form, and its maps against exact arithmetic and the rod's closed forms."""
+"""The study of the two laws on coarse maps, and these against exact arithmetic and the rod's closed forms."""
 
 from __future__ import annotations
 
 import math
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
+from study_runs import QUIET
 
-import studies.laws.claim as laws
 from painleve.errors import InputError
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import State, make_state
-from painleve.store import load
 from painleve.theory.limit_set import limit_set
-from studies.laws.measure import map_laws
-from studies.study import StudyResult
+from studies.laws.measure import measure_laws
+from studies.laws.report import report
+from studies.laws.two_laws import map_laws
+from studies.parts import Report
 
 
 @pytest.fixture(scope="module")
-def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path]:
-    folder = tmp_path_factory.mktemp("laws")
-    return laws.run(folder, quick=True), folder
+def maps() -> xr.Dataset:
+    return measure_laws(size=40, checks=1, seed=0, progress=QUIET)
 
 
 @pytest.fixture(scope="module")
-def maps(finished: tuple[StudyResult, Path]) -> xr.Dataset:
-    return load(finished[1] / "laws.h5")
+def found(maps: xr.Dataset) -> Report:
+    return report({"laws": maps})
 
 
 def rod(**keys: object) -> State:
     return make_state(load_scene("spatial_rod"), keys={"theta": "atan(2)", **keys})
 
 
-@pytest.mark.slow
-def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyResult, Path]) -> None:
-    result, folder = finished
-    assert {path.name for path in folder.iterdir()} == {"laws.h5", "laws.pdf", "laws.png"}
-    assert {path.name for path in result.files} == {"laws.h5", "laws.pdf", "laws.png"}
-    assert all(path.stat().st_size > 10_000 for path in result.files)
-
-
-@pytest.mark.slow
-def test_the_closed_forms_hold_on_the_whole_map_and_exact_counts_agree(finished: tuple[StudyResult, Path]) -> None:
-    rows = finished[0].data["rows"]
+def test_the_closed_forms_hold_on_the_whole_map_and_exact_counts_agree(found: Report) -> None:
+    rows: Any = found.data["rows"]
     assert [row["edges_missed"] for row in rows] == [None, None, None, 0] * 2
     assert all(row["agree"] == row["checks"] > 0 for row in rows)
-    assert "at all but 0 points" in finished[0].status
+    assert "at all but 0 points" in found.status
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("row", "largest", "three"), [(3, 1.08, 0.064), (7, 1.66, 0.037)])
-def test_the_tangential_figures_are_those_expected(
-    row: int, largest: float, three: float, finished: tuple[StudyResult, Path]
-) -> None:
-    found = finished[0].data["rows"][row]
-    assert found["approach"] == 0.0
-    assert found["largest"] == pytest.approx(largest, rel=0.03)
-    assert found["shares"]["3"] == pytest.approx(three, abs=0.004)
+def test_the_tangential_figures_are_those_expected(row: int, largest: float, three: float, found: Report) -> None:
+    told: Any = found.data["rows"][row]
+    assert told["approach"] == 0.0
+    assert told["largest"] == pytest.approx(largest, rel=0.03)
+    assert told["shares"]["3"] == pytest.approx(three, abs=0.004)
 
 
 def test_impacts_have_one_solution_or_three_and_nothing_else(maps: xr.Dataset) -> None:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import sympy as sp
+import xarray as xr
 
 from painleve.core.steps import solutions
 from painleve.dynamics.genot_brogliato import find_friction, singular_point
@@ -18,16 +21,16 @@ from painleve.dynamics.start import make_start
 from painleve.errors import InputError
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
-from painleve.store import load
 from painleve.sweep import map_regimes
-from studies.reference import claim
+from studies.parts import Report
 from studies.reference.compare import FactStatus, FoundValue, compare
 from studies.reference.contact import regime, step_solutions
+from studies.reference.dataset import as_dataset
 from studies.reference.facts import Fact, FactKind, load_facts
+from studies.reference.report import report
 from studies.reference.rod import eigenvalue_ratio
 from studies.reference.routes import ROUTES, reproduce
 from studies.reference.slip import ArcEnd, derive_slip, make_flow
-from studies.study import StudyResult
 
 ROOT = Path(__file__).parents[1]
 FACTS = load_facts(ROOT / "data" / "reference" / "facts.toml")
@@ -42,6 +45,12 @@ ENTRY = {
     "source": '"a"',
     "says": '"so it is"',
 }
+
+
+@cache
+def found_for(fact: str) -> FoundValue:
+    """By its route, in the quick form."""
+    return ROUTES[fact](True, 0)
 
 
 def entry(**changes: str | None) -> str:
@@ -103,7 +112,7 @@ def test_a_fact_without_a_route_is_refused() -> None:
 
 @pytest.mark.parametrize("fact", NUMBERS, ids=lambda fact: fact.id)
 def test_a_number_is_reproduced_and_a_misprint_of_it_found_out(fact: Fact) -> None:
-    found = ROUTES[fact.id](True, 0)
+    found = found_for(fact.id)
     assert compare(fact, found).status is FactStatus.REPRODUCED
     if fact.kind is FactKind.DECIMAL:
         misprint = f"{float(fact.value) + 10.0**-fact.decimals:.{fact.decimals}f}"
@@ -226,35 +235,32 @@ def test_regimes_are_those_of_the_map_of_regimes() -> None:
 
 
 @pytest.fixture(scope="module")
-def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path]:
-    folder = tmp_path_factory.mktemp("reference")
-    return claim.run(folder, quick=True), folder
+def drawn() -> xr.Dataset:
+    return as_dataset([compare(fact, found_for(fact.id)) for fact in FACTS], command="test")
 
 
-def test_a_quick_run_makes_its_files_and_names_them(finished: tuple[StudyResult, Path]) -> None:
-    result, folder = finished
-    assert {path.name for path in folder.iterdir()} == {f"reference.{suffix}" for suffix in ("h5", "pdf", "png")}
-    assert {path.name for path in result.files} == {path.name for path in folder.iterdir()}
-    assert load(folder / "reference.h5").sizes["fact"] == len(FACTS)
+@pytest.fixture(scope="module")
+def told(drawn: xr.Dataset) -> Report:
+    return report({"reference": drawn})
 
 
-def test_all_facts_are_reproduced_but_the_one_with_two_contacts(finished: tuple[StudyResult, Path]) -> None:
-    statuses = {row["id"]: row["status"] for row in finished[0].data["facts"]}
+def test_all_facts_are_reproduced_but_the_one_with_two_contacts(told: Report) -> None:
+    facts: Any = told.data["facts"]
+    statuses = {row["id"]: row["status"] for row in facts}
     assert statuses.pop("stewart_rest") == "not reproducible"
     assert set(statuses.values()) == {"reproduced"}
-    assert finished[0].status == f"{len(FACTS)} published facts: {len(FACTS) - 1} reproduced, 1 not reproducible."
+    assert told.status == f"{len(FACTS)} published facts: {len(FACTS) - 1} reproduced, 1 not reproducible."
 
 
-def test_the_printout_has_every_published_value_with_its_status_and_source(finished: tuple[StudyResult, Path]) -> None:
-    lines = finished[0].table.splitlines()
+def test_the_printout_has_every_published_value_with_its_status_and_source(told: Report) -> None:
+    lines = told.table.splitlines()
     for fact in FACTS:
         (line,) = [x for x in lines if x.startswith(fact.statement + " ") and f" {fact.value} " in x]
         assert ("not reproducible" if fact.id == "stewart_rest" else "reproduced") in line
         assert any(fact.source.citation in x for x in lines)
 
 
-def test_the_published_marks_of_the_figure_lie_on_the_derived_curves(finished: tuple[StudyResult, Path]) -> None:
-    drawn = load(finished[1] / "reference.h5")
+def test_the_published_marks_of_the_figure_lie_on_the_derived_curves(drawn: xr.Dataset) -> None:
     uniform = drawn["critical_friction"].sel(alpha=3.0)
     # the grid's least value is no less than the minimum, and a half step beside it at most
     least, step = drawn["critical_friction"].min("theta"), float(np.diff(drawn["theta"])[0])
@@ -265,8 +271,7 @@ def test_the_published_marks_of_the_figure_lie_on_the_derived_curves(finished: t
     assert float(uniform.interp(theta=math.pi / 3)) == pytest.approx(float(drawn["sixty_degrees_friction"]), rel=1e-3)
 
 
-def test_the_drawn_force_grows_without_bound_above_mu_C_alone(finished: tuple[StudyResult, Path]) -> None:
-    drawn = load(finished[1] / "reference.h5")
+def test_the_drawn_force_grows_without_bound_above_mu_C_alone(drawn: xr.Dataset) -> None:
     near = drawn["slip_force"].where(drawn["distance"] < 1e-8, drop=True)
     above = drawn["slip_friction"] > drawn["singular_friction"]
     assert np.isnan(near.where(~above, drop=True)).all()

@@ -1,89 +1,112 @@
-"""The study of Theorem 1, in its quick form: every state of every scene, told as exact arithmetic decides it."""
+"""The study of Theorem 1 on two scenes and few samples: told as exact arithmetic decides it, and drawn whole."""
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
+import xarray as xr
+from study_runs import QUIET
 
-import studies.theorem1.claim as theorem1
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
-from painleve.store import load
+from painleve.plotting import draw
 from painleve.theory.classification import classify
-from studies.study import StudyResult
+from studies.parts import Report
+from studies.theorem1.figures import DRAWINGS
+from studies.theorem1.measure import measure_scene
+from studies.theorem1.overview import overview
+from studies.theorem1.report import report
 
-pytestmark = pytest.mark.slow  # the study, run whole
-
-SCENE_NAMES = theorem1.SCENES
-UNMAPPED = {f"gamma_map_spatial_rod_ellipse.{suffix}" for suffix in ("h5", "pdf", "png")}  # no one coefficient
-ROOTS = [
-    ("spatial_rod", "critical_oblique"),
-    ("spatial_rod", "double_zero"),
-    ("spatial_rod_ellipse", "critical_oblique"),
-    ("spatial_rod_ellipse", "tilted"),
-]
-STATES = [(scene, state.name) for scene in SCENE_NAMES for state in load_scene(scene).states]
+SCENES = ("slender_rod", "worn_tip_rod")
+STATES = [(scene, state.name) for scene in SCENES for state in load_scene(scene).states]
+EPS = [1e-2, 1e-3, 1e-4]
 
 
 @pytest.fixture(scope="module")
-def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[StudyResult, Path]:
-    folder = tmp_path_factory.mktemp("theorem1")
-    return theorem1.run(folder, quick=True), folder
+def datasets() -> dict[str, xr.Dataset]:
+    return dict(
+        pair for name in SCENES for pair in measure_scene(load_scene(name), EPS, samples=8192, seed=0, progress=QUIET)
+    )
 
 
-def rows(finished: tuple[StudyResult, Path]) -> dict[tuple[str, str], dict]:
-    return {(row["scene"], row["state"]): row for row in finished[0].data["rows"]}
+@pytest.fixture(scope="module")
+def found(datasets: dict[str, xr.Dataset]) -> Report:
+    return report(datasets)
 
 
-def test_a_quick_run_makes_every_file_and_names_them_all(finished: tuple[StudyResult, Path]) -> None:
-    result, folder = finished
-    kinds, suffixes = ("distances", "members", "gamma_map"), ("h5", "pdf", "png")
-    expected = {f"{kind}_{scene}.{suffix}" for kind in kinds for scene in SCENE_NAMES for suffix in suffixes}
-    expected -= UNMAPPED
-    assert {path.name for path in folder.iterdir()} == expected
-    assert {path.name for path in result.files} == expected
-    for path in result.files:
-        assert path.stat().st_size > 5000
-        if path.suffix == ".h5":
-            assert load(path).sizes["state"] == len(load_scene(path.stem.split("_", 1)[1].removeprefix("map_")).states)
+def row_of(found: Report, scene: str, state: str) -> dict[str, Any]:
+    rows = found.data["rows"]
+    assert isinstance(rows, list)
+    (row,) = [row for row in rows if (row["scene"], row["state"]) == (scene, state)]
+    return row
+
+
+def line_of(found: Report, scene: str, state: str) -> list[str]:
+    (line,) = [line.split() for line in found.table.splitlines() if line.split()[:2] == [scene, state]]
+    return line
+
+
+def test_a_scene_has_its_distances_its_members_and_its_map(datasets: dict[str, xr.Dataset]) -> None:
+    assert list(datasets) == [f"{kind}_{scene}" for scene in SCENES for kind in ("distances", "members", "gamma_map")]
+    for stem, dataset in datasets.items():
+        assert dataset.sizes["state"] == len(load_scene(stem.split("_", 1)[1].removeprefix("map_")).states)
+
+
+def test_a_scene_without_one_coefficient_of_friction_has_no_map() -> None:
+    stems = [stem for stem, _ in measure_scene(load_scene("bead"), EPS[:1], samples=64, seed=0, progress=QUIET)]
+    assert stems == ["distances_bead", "members_bead"]
 
 
 @pytest.mark.parametrize(("scene", "state"), STATES)
-def test_the_table_tells_the_branch_that_exact_arithmetic_decides(
-    scene: str, state: str, finished: tuple[StudyResult, Path]
-) -> None:
+def test_the_table_tells_the_branch_that_exact_arithmetic_decides(scene: str, state: str, found: Report) -> None:
     exact = classify(make_state(load_scene(scene), state)).branch.value
-    assert rows(finished)[scene, state]["branch"] == exact
-    (line,) = [line.split() for line in finished[0].table.splitlines() if line.split()[:2] == [scene, state]]
-    assert line[2] == exact
+    assert row_of(found, scene, state)["branch"] == exact
+    assert line_of(found, scene, state)[2] == exact
 
 
 @pytest.mark.parametrize(("scene", "state"), STATES)
-def test_no_statement_is_contradicted_and_every_excess_falls_like_eps_or_its_root(
-    scene: str, state: str, finished: tuple[StudyResult, Path]
-) -> None:
-    row = rows(finished)[scene, state]
-    assert row["verdict"] in ("consistent", "proved")
-    assert row["slope"] == pytest.approx(0.5 if (scene, state) in ROOTS else 1.0, abs=0.05)
+def test_no_statement_is_contradicted_and_every_excess_falls_like_eps(scene: str, state: str, found: Report) -> None:
+    row = row_of(found, scene, state)
+    assert row["verdict"] == line_of(found, scene, state)[4] == "consistent"
+    assert row["slope"] == pytest.approx(1.0, abs=0.05)
 
 
-@pytest.mark.parametrize(("scene", "length"), [("worn_tip_rod", 0.7**0.5), ("two_link_arm", 1.0)])
-def test_in_the_isolated_branch_half_of_the_segment_stays_away(
-    scene: str, length: float, finished: tuple[StudyResult, Path]
-) -> None:
-    # By hand at tan(theta) = 2: u_tilde - u- = (2/5, 3/10, 3/(2 sqrt(5))); the arm stops, and its u- has length 1.
-    row = rows(finished)[scene, "isolated"]
-    assert row["excess_A_Aeps"]["upper"] == pytest.approx(length / 2.0, rel=1e-4)
+def test_in_the_isolated_branch_half_of_the_segment_stays_away(found: Report) -> None:
+    # By hand at tan(theta) = 2: u_tilde - u- = (2/5, 3/10, 3/(2 sqrt(5))).
+    row = row_of(found, "worn_tip_rod", "isolated")
+    assert row["excess_A_Aeps"]["upper"] == pytest.approx(0.7**0.5 / 2.0, rel=1e-3)
     assert row["witnessed_upper"] is None
 
 
-def test_the_hard_state_shows_both_the_misleading_sample_and_the_witnesses(
-    finished: tuple[StudyResult, Path],
-) -> None:
-    row = rows(finished)["slender_rod", "double_zero"]
+def test_the_hard_state_shows_both_the_misleading_sample_and_the_witnesses(found: Report) -> None:
+    row = row_of(found, "slender_rod", "double_zero")
     assert row["excess_A_Aeps"]["upper"] > 0.1
-    assert row["witnessed_upper"] < 1e-8
-    (line,) = [line for line in finished[0].table.splitlines() if line.split()[:2] == ["slender_rod", "double_zero"]]
-    assert "*" in line
-    assert "* The sample alone misleads" in finished[0].table
+    assert row["witnessed_upper"] < 1e-6
+    assert "*" in line_of(found, "slender_rod", "double_zero")
+    assert "* The sample alone misleads" in found.table
+    assert found.status.startswith(f"Theorem 1 at {len(STATES)} states: {len(STATES)} consistent")
+
+
+def test_the_overview_holds_for_every_state_what_the_theorem_is_about(datasets: dict[str, xr.Dataset]) -> None:
+    distances = [d for d in datasets.values() if d.attrs["kind"] == "distances"]
+    whole = overview(distances)
+    assert whole["case"].values.tolist() == [f"{scene} {state}" for scene, state in STATES]
+    isolated, hard = (STATES.index(pair) for pair in (("worn_tip_rod", "isolated"), ("slender_rod", "double_zero")))
+    last = distances[1].isel(state=-1)
+    np.testing.assert_array_equal(whole["to_limit"][isolated], last["ends_excess_Aeps_A_lower"])
+    np.testing.assert_array_equal(whole["of_limit"][isolated], last["excess_A_Aeps_upper"])
+    np.testing.assert_array_equal(whole["of_limit"][hard], distances[0].isel(state=3)["witnessed_upper"])
+
+
+def test_the_figure_of_the_whole_theorem_has_a_line_for_every_state_in_the_column_of_its_branch(
+    datasets: dict[str, xr.Dataset],
+) -> None:
+    whole = overview([d for d in datasets.values() if d.attrs["kind"] == "distances"])
+    figure = draw(whole, DRAWINGS)
+    counts = dict(zip(("none", "negative", "critical_approached", "critical_isolated"), figure.axes, strict=False))
+    for branch, axis in counts.items():
+        states = sum(classify(make_state(load_scene(s), name)).branch.value == branch for s, name in STATES)
+        assert f"{states} state" in axis.get_title()
+        assert sum(line.get_label() == "a state in the plane" for line in axis.get_lines()) == states

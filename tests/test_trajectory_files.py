@@ -11,6 +11,7 @@ import pytest
 import sympy as sp
 import xarray as xr
 from dynamics_scenes import block
+from matplotlib.animation import PillowWriter
 from matplotlib.figure import Figure
 from PIL import Image
 from planar_scenes import SCENE_NAMES
@@ -27,7 +28,7 @@ from painleve.mechanics.state import make_state
 from painleve.plotting import draw, save_figure
 from painleve.plotting.animation import FRAMES, animate
 from painleve.plotting.trajectory import JUMPS, spaced
-from painleve.store import load, save
+from painleve.store import labels_of, load, save
 from painleve.sweep.trajectories import trajectory_dataset
 
 ROD, ARM = load_scene("slender_rod"), load_scene("two_link_arm")
@@ -125,7 +126,10 @@ def test_the_figure_names_its_quantities_and_hides_no_data(name: str, datasets: 
     figure = draw(datasets[name])
     body, *over_time = figure.axes
     assert (body.get_xlabel(), body.get_ylabel()) == ("$x$ (m)", "height (m)")
-    assert [a.get_ylabel() for a in over_time] == ["$\\gamma$ (SI)", "velocity (m/s)", "energy (J)"]
+    gamma, *others = [a.get_ylabel() for a in over_time]
+    assert others == ["velocity (m/s)", "energy (J)"]
+    # the norm of grad g sums squares of m/m and of m/rad, so its inverse mixes these; the arm has angles only
+    assert gamma == ("$\\gamma$ (rad²/(kg m²))" if name == "arm" else "$\\gamma$ (1/kg,\nrad²/(kg m²))")
     assert over_time[-1].get_xlabel() == "time $t$ (s)"
     (legend,) = figure.legends
     figure.draw_without_rendering()
@@ -167,6 +171,26 @@ def test_an_animation_has_a_frame_for_each_even_instant_and_reports_each(
             assert image.format == "GIF"
             assert image.n_frames == frames == sum(told)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["arm.gif", "still.gif", "stoss.gif"]
+
+
+def test_an_animation_says_how_slow_it_is_and_marks_the_jump_from_then_on(
+    datasets: dict[str, xr.Dataset], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    said: list[tuple[str, str]] = []
+
+    def look(writer: PillowWriter) -> None:
+        (axis,) = writer.fig.axes
+        said.append((axis.get_title("left"), axis.get_title("right")))
+        PillowWriter.grab_frame(writer)
+
+    monkeypatch.setattr("painleve.plotting.animation.PillowWriter", type("Seen", (PillowWriter,), {"grab_frame": look}))
+    animate(datasets["stoss"], tmp_path / "x.gif")
+    times, kinds = datasets["stoss"]["time"].values, labels_of(datasets["stoss"]["change"])
+    (jump,) = times[kinds == "jump_without_collision"]
+    slower = FRAMES / 20 / (times[-1] - times[0])  # 20 frames a second
+    for (left, right), index in zip(said, spaced(times, FRAMES), strict=True):
+        assert left == f"$t$ = {times[index]:.4g} s, shown {slower:.3g} times slower"
+        assert right == (f"jump without collision at $t$ = {jump:.4g} s" if times[index] >= jump else "")
 
 
 def test_an_animation_that_is_stopped_leaves_no_file(datasets: dict[str, xr.Dataset], tmp_path: Path) -> None:

@@ -40,7 +40,7 @@ def claim_of(name: str) -> Any:
 
 def drawings_of(kind: str) -> Mapping[str, Callable[[Any], Any]]:
     """The drawings of the study that draws datasets of this kind; none where no study does, or there are none."""
-    for path in (CHECKOUT / PACKAGE).glob("*/claim.py"):
+    for path in sorted((CHECKOUT / PACKAGE).glob("*/claim.py")):
         drawings: Mapping[str, Callable[[Any], Any]] = _import(f"{path.parent.name}.figures").DRAWINGS
         if kind in drawings:
             return drawings

@@ -38,7 +38,7 @@ def run(options: argparse.Namespace) -> int:
     if output.exists() and not output.is_dir():
         raise InputError(f"output {output}: is a file; give a folder")
     output.mkdir(parents=True, exist_ok=True)
-    result = claim_of(options.name).run(output, quick=options.quick, seed=options.seed)
+    result = claim_of(options.name).STUDY.run(output, quick=options.quick, seed=options.seed)
     if options.json:
         files = [str(path) for path in result.files]
         print_json({"study": options.name, "status": result.status, "files": files, **result.data})

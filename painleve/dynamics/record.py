@@ -13,6 +13,7 @@ from painleve.core.motion_codes import Change
 from painleve.dataset_names import IN_TRAJECTORIES, hold_to
 from painleve.dynamics.contact_rows import tangential_names
 from painleve.dynamics.start import Start
+from painleve.mechanics.norm_units import gamma_unit
 
 __all__ = ["record"]
 
@@ -68,11 +69,12 @@ def _motion(start: Start, columns: Mapping[str, np.ndarray]) -> dict[str, xr.Var
 
 
 def _contact(start: Start, columns: Mapping[str, np.ndarray]) -> dict[str, xr.Variable]:
-    length, speed, impulse = ("m", "m/s", "N s") if start.scene.outline else ("SI", "SI", "SI")
+    scene, sentence = start.scene, "gamma, the least normal compliance: below 0 the law is discontinuous"
+    length, speed, impulse = ("m", "m/s", "N s") if scene.outline else ("SI", "SI", "SI")
     tangential = {side: TANGENTIAL[side] for side in tangential_names(start.motion)}
     sentences = {
         "g": ("constraint g(q), admissible where it is not positive", length),
-        "gamma": ("gamma, the least normal compliance: the law is discontinuous where it is negative", "SI"),
+        "gamma": (sentence, gamma_unit(scene)),
         "v_n": ("normal velocity of the contact point, positive away from the obstacle", speed),
         **{f"v_{side}": (f"{words} velocity of the contact point", speed) for side, words in tangential.items()},
         "kinetic_energy": ("kinetic energy of the scene", "J"),

@@ -9,19 +9,21 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 from painleve.errors import InputError
 from painleve.plotting.style import (
     GREY,
     PALETTE,
     THEOREM_MARKS,
+    entitle,
     label_outside,
-    labels_of,
     legend_below,
     panels,
     spoken,
     with_unit,
 )
+from painleve.store import labels_of
 
 __all__ = ["draw_distances"]
 
@@ -89,6 +91,7 @@ LOWER = _Series(
 )
 # Ball arithmetic gives bounds such as 1e-93 where the truth is 0; drawn to scale, one of them would flatten the rest.
 FOOT = 1e-20
+STRIP = 0.09  # of a panel's height: where marks stand that have no place on its axis
 FIXED = {"state", "eps", "law_branch", "coordinate"}
 
 
@@ -107,10 +110,10 @@ def draw_distances(dataset: xr.Dataset) -> Figure:
     for axis, (title, case) in zip(axes, cases, strict=True):
         axis.set_title(title)
         _draw_panel(axis, case, x)
+    _open_strips(axes)
     words = "radius $\\varepsilon$" if x == "eps" else dataset[x].attrs["long_name"].removesuffix(" (swept)")
     label_outside(axes, columns, with_unit(words, dataset[x]), with_unit("distance", dataset["half_jump"]))
-    if dataset.attrs.get("scene"):
-        figure.suptitle(spoken(dataset.attrs["scene"]), fontsize=9)
+    entitle(figure, dataset)
     legend_below(figure, axes, columns=3)
     return figure
 
@@ -145,30 +148,39 @@ def _draw_panel(axis: Axes, case: xr.Dataset, x: str) -> None:
     for series in (TO_LIMIT, UPPER, LOWER, FROM_LIMIT, WITNESSED, *((TO_ENDS, FROM_ENDS) if isolated.any() else ())):
         label = series.label.replace(METHOD, str(case.attrs["method"]))
         _draw_series(axis, values, case[series.variable].values, series, label)
-    _draw_below(
-        axis,
-        values,
-        case["witnessed_upper"].values < FOOT,
-        "$0$",
-        WITNESSED.colour,
-        "$e(A, A_\\varepsilon) < 10^{-20}$ (witnesses)",
-    )
+    foot = case["witnessed_upper"].values < FOOT
     failed = np.broadcast_to(labels_of(case["outcome"]) == "failed", values.shape)
-    _draw_below(axis, values, failed, "x", PALETTE["black"], "failed")
+    _draw_strip(axis, values, foot, "v", WITNESSED.colour, "grey band: $e(A, A_\\varepsilon) < 10^{-20}$ (witnesses)")
+    _draw_strip(axis, values, failed, "x", PALETTE["black"], "failed")
 
 
-def _draw_below(axis: Axes, x: np.ndarray, shown: np.ndarray, marker: str, colour: str, label: str) -> None:
-    """What has no place on the axis, at the foot of the panel."""
+def _draw_strip(axis: Axes, x: np.ndarray, shown: np.ndarray, marker: str, colour: str, label: str) -> None:
+    """What has no place on the axis, in the strip below it."""
     if shown.any():
         axis.plot(
             x[shown],
-            np.full(shown.sum(), 0.04),
+            np.full(shown.sum(), STRIP / 2.0),
             linestyle="none",
             marker=marker,
             color=colour,
+            markersize=3.5,
             label=label,
             transform=axis.get_xaxis_transform(),
+            zorder=3,
         )
+
+
+def _open_strips(axes: list[Axes]) -> None:
+    """A band at the foot of every panel that no datum reaches, told from the axis by its shade and without ticks."""
+    if not any(line.get_transform() == axis.get_xaxis_transform() for axis in axes for line in axis.get_lines()):
+        return
+    bottom, top = axes[0].get_ylim()
+    ticks = [tick for tick in axes[0].get_yticks() if bottom <= tick <= top]
+    axes[0].set_ylim(bottom * (bottom / top) ** (STRIP / (1.0 - STRIP)), top)
+    for axis in axes:
+        band = Rectangle((0.0, 0.0), 1.0, STRIP, transform=axis.transAxes, color=GREY, alpha=0.18, linewidth=0.0)
+        axis.add_patch(band)
+        axis.set_yticks(ticks)
 
 
 def _draw_series(axis: Axes, x: np.ndarray, y: np.ndarray, series: _Series, label: str) -> None:

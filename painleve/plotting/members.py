@@ -7,7 +7,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from painleve.plotting.style import GREY, LAW_MARKS, PALETTE, labels_of, legend_below, panels, spoken
+from painleve.plotting.style import GREY, LAW_MARKS, PALETTE, entitle, legend_below, panels, spoken, symbol
+from painleve.store import labels_of
 
 __all__ = ["draw_members"]
 
@@ -16,19 +17,27 @@ ONE_POINT = 1e-9  # extent, in units of velocity, below which a cloud would be d
 
 
 def draw_members(dataset: xr.Dataset) -> Figure:
-    """A row for each state, a column for each eps; offsets from u-, projected on the plane that the axes name."""
+    """A row for each state, a column for each eps; offsets from u-, projected on the plane of two unit vectors.
+
+    The first vector stands over the first column of its row, the second over the last.
+    """
     count = dataset.sizes["eps"]
     figure, axes = panels(dataset.sizes["state"] * count, columns=count, height=1.75)
     for k, axis in enumerate(axes):
         one = dataset.isel(state=k // count, eps=k % count)
-        axis.set_title(f"{spoken(one['state'].item())}, $\\varepsilon$ = {one['eps'].item():g}")
+        first, last = k % count == 0, k % count == count - 1
+        eps = f"$\\varepsilon$ = {one['eps'].item():g}"
+        vectors = [f"$e_1$ = {_vector(one['axis_along'])}"] * first + [f"$e_2$ = {_vector(one['axis_across'])}"] * last
+        axis.set_title(f"{spoken(one['state'].item())}, {eps}" if first else eps, loc="left")
+        axis.set_title(", ".join(vectors), loc="right", fontsize=7.0)
         _draw_panel(axis, one)
         axis.locator_params(nbins=6)
         axis.margins(0.08)
-        axis.set_xlabel(f"along {_vector(one['axis_along'])}")
-        axis.set_ylabel(f"across\n{_vector(one['axis_across'])}")
-    unit, names = dataset["along"].attrs["units"], ", ".join(str(name) for name in dataset["coordinate"].values)
-    figure.suptitle(f"components of $v - u^-$ ({unit}) along unit vectors in ({names})", fontsize=8)
+        axis.set_xlabel("along $e_1$")
+        if first:
+            axis.set_ylabel("along $e_2$")
+    unit, names = dataset["along"].attrs["units"], ", ".join(symbol(str(name)) for name in dataset["coordinate"].values)
+    entitle(figure, dataset, f"components of $v - u^-$ ({unit}) along unit vectors in ({names})")
     legend_below(figure, axes, columns=4)
     return figure
 
@@ -99,4 +108,4 @@ def _draw_end(axis: Axes, x: float, marker: str, label: str) -> None:
 
 
 def _vector(axis: xr.DataArray) -> str:
-    return "(" + ", ".join(f"{0.0 if abs(x) < 5e-3 else x:.2f}" for x in axis.values) + ")"
+    return "(" + ", ".join("0" if abs(x) < 5e-3 else f"{x:.2f}".replace("-", "−") for x in axis.values) + ")"

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-import numpy as np
 import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -22,11 +23,16 @@ __all__ = [
     "STYLE",
     "THEOREM_MARKS",
     "Mark",
+    "entitle",
     "label_outside",
-    "labels_of",
     "legend_below",
+    "legend_under",
+    "lettered",
     "panels",
+    "power_of_ten",
+    "raised",
     "spoken",
+    "symbol",
     "with_unit",
 ]
 
@@ -67,7 +73,13 @@ STYLE: Any = MappingProxyType(
         "hatch.linewidth": 0.4,
     }
 )
+GREEK = {name: name for name in ("alpha", "beta", "gamma", "theta", "psi", "mu", "kappa", "xi", "eta", "omega")}
+GREEK |= {"phi": "varphi"}
+NAME = re.compile(r"(?P<letter>[A-Za-z]+)(?:_(?P<low>\w+)|(?P<number>[0-9]*))")
+POWER = re.compile(r"\^(-?[0-9]+)")
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 MOST_PANELS = 24
+UNDER = -0.22  # of the height of a panel: where its own legend begins
 WIDTH = 7.0  # inches: two columns of a journal
 
 
@@ -101,22 +113,45 @@ THEOREM_MARKS = MappingProxyType(
 )
 
 
-def labels_of(code: xr.DataArray) -> np.ndarray:
-    """The meanings of a variable of codes, in its shape."""
-    values = np.atleast_1d(code.attrs["flag_values"]).tolist()
-    meanings = dict(zip(values, code.attrs["flag_meanings"].split(), strict=True))
-    return np.vectorize(meanings.__getitem__, otypes=[object])(code.values)
-
-
 def spoken(label: object) -> str:
     """A label as words."""
     return str(label).replace("_", " ")
 
 
-def with_unit(text: str, variable: xr.DataArray) -> str:
-    """An axis label with the variable's unit."""
-    unit = variable.attrs["units"]
-    return text if unit == "1" else f"{text} ({unit})"
+def lettered(text: str) -> str:
+    """Values such as "alpha = 8, m2 = 1.06 kg, k = 2/rad^2" with names as formulas and powers raised."""
+    return ", ".join(_lettered(part) for part in text.split(", ")) if text else ""
+
+
+def _lettered(part: str) -> str:
+    name, equals, value = part.partition(" = ")
+    return f"{symbol(name)} = {raised(value)}" if equals else part
+
+
+def symbol(name: str) -> str:
+    """The name of a coordinate or a parameter as a formula, such as theta, m2 or beta_xx."""
+    found = NAME.fullmatch(name)
+    if not found:
+        return name
+    letter, index = found["letter"], found["low"] or found["number"]
+    base = f"\\{GREEK[letter]}" if letter in GREEK else letter if len(letter) == 1 else f"\\mathrm{{{letter}}}"
+    return f"${base}{f'_{{{index}}}' if index else ''}$"
+
+
+def raised(unit: str) -> str:
+    """A unit with its powers raised."""
+    return POWER.sub(lambda found: found[1].translate(SUPERSCRIPTS), unit)
+
+
+def with_unit(text: str, variable: xr.DataArray, *, broken: bool = False) -> str:
+    """An axis label with the variable's unit; `broken`: with a line for each unit that it mixes."""
+    unit = raised(variable.attrs["units"])
+    return text if unit == "1" else f"{text} ({unit.replace(', ', ',' + chr(10)) if broken else unit})"
+
+
+def entitle(figure: Figure, dataset: xr.Dataset, more: str = "") -> None:
+    """The scene's name over the figure, and what else all panels share."""
+    figure.suptitle(": ".join(filter(None, [spoken(dataset.attrs.get("scene", "")), more])), fontsize=8.5)
 
 
 def panels(count: int, *, columns: int, height: float, shared: bool = False) -> tuple[Figure, list[Axes]]:
@@ -144,6 +179,20 @@ def label_outside(axes: list[Axes], columns: int, x: str, y: str) -> None:
         if k + columns >= len(axes):
             axis.set_xlabel(x)
             axis.tick_params(labelbottom=True)
+
+
+def legend_under(axis: Axes, columns: int) -> None:
+    """A legend of one panel, under its axis; every label once."""
+    entries: dict[str, Artist] = {}
+    for handle, label in zip(*axis.get_legend_handles_labels(), strict=True):
+        entries.setdefault(label, handle)
+    axis.legend(list(entries.values()), list(entries), loc="upper center", bbox_to_anchor=(0.5, UNDER), ncols=columns)
+
+
+def power_of_ten(number: float) -> str:
+    """1e-05 as a power; other numbers as they are."""
+    exponent = round(math.log10(number))
+    return f"$10^{{{exponent}}}$" if math.isclose(number, 10.0**exponent, rel_tol=1e-9) else f"{number:g}"
 
 
 def legend_below(figure: Figure, axes: Iterable[Axes], columns: int) -> None:

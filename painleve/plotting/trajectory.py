@@ -11,7 +11,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from painleve.plotting.style import GREY, PALETTE, WIDTH, labels_of, legend_below, with_unit
+from painleve.plotting.style import GREY, PALETTE, WIDTH, legend_below, with_unit
+from painleve.store import labels_of
 
 __all__ = ["draw_body", "draw_trajectory", "frame_body", "spaced"]
 
@@ -139,4 +140,4 @@ def _draw_panel(axis: Axes, dataset: xr.Dataset, label: str, curves: tuple[Plott
                 label=name,
             )
     axis.locator_params(axis="y", nbins=5)
-    axis.set_ylabel(with_unit(label, dataset[curves[0].name]))
+    axis.set_ylabel(with_unit(label, dataset[curves[0].name], broken=True))

@@ -11,19 +11,10 @@ from painleve.asymptotics.member import Member
 from painleve.asymptotics.theorem import Evidence, Verdict
 from painleve.dataset_names import IN_SWEEPS, hold_to
 from painleve.errors import InputError
+from painleve.mechanics.norm_units import ball_unit, gamma_unit, velocity_unit
 from painleve.sets import Bounds
 from painleve.sweep.grid import SweepGrid
-from painleve.sweep.variables import (
-    BRANCHES,
-    LAW_BRANCHES,
-    OUTCOMES,
-    STATUSES,
-    ball_unit,
-    code,
-    coded,
-    text,
-    velocity_unit,
-)
+from painleve.sweep.variables import BRANCHES, LAW_BRANCHES, OUTCOMES, STATUSES, code, coded, text
 from painleve.theory.classification import Classification
 
 __all__ = ["DistanceTable"]
@@ -154,13 +145,13 @@ class DistanceTable:
         return found
 
     def _state_variables(self) -> dict[str, xr.Variable]:
-        dims, unit = self.grid.dims, velocity_unit(self.grid.scene)
+        dims, unit, own = self.grid.dims, velocity_unit(self.grid.scene), gamma_unit(self.grid.scene)
 
         def number(values: np.ndarray, sentence: str, units: str, *more: str) -> xr.Variable:
             return xr.Variable((*dims, *more), values, {"units": units, "long_name": sentence})
 
         return {
-            "gamma": number(self.gamma, "gamma(q), the least normal compliance over the friction section", "SI"),
+            "gamma": number(self.gamma, "gamma(q), the least normal compliance over the friction section", own),
             "half_jump": number(self.half_jump, "half the distance between u- and u_tilde", unit),
             "slope": number(self.slope, "slope of the logarithm of the excess against that of eps", "1"),
             "u_minus": number(self.u_minus, "left velocity u- of the state", unit, "coordinate"),

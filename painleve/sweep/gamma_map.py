@@ -11,14 +11,17 @@ import xarray as xr
 
 from painleve.errors import InputError
 from painleve.kernels.compiled import Kernels, make_kernels
+from painleve.mechanics.derive import derive
+from painleve.mechanics.norm_units import gamma_unit
 from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import Number, State
 from painleve.store import provenance
 from painleve.sweep.grid import make_grid
-from painleve.sweep.variables import BRANCHES, code, coded
-from painleve.theory.classification import classify
+from painleve.sweep.map_panels import MappedState, panel_titles, panels_of
+from painleve.sweep.variables import BRANCHES, code, coded, text
+from painleve.theory.classification import Classification, classify
 
-__all__ = ["map_gamma"]
+__all__ = ["has_gamma_map", "map_gamma"]
 
 REACH = 0.4  # of the path on both sides of the states, in the unit of its coordinate
 HEADROOM = 1.5  # the friction axis goes beyond the largest coefficient at a state by this factor
@@ -42,6 +45,12 @@ class _Path:
         return self.a / np.where(self.b > 0.0, self.b, np.nan)
 
 
+def has_gamma_map(scene: Scene) -> bool:
+    """Whether a scene has symmetric friction, and one path along the contact on which gamma depends."""
+    derivation = derive(scene)
+    return derivation.critical_friction is not None and len(derivation.shape) in (1, 2)
+
+
 def map_gamma(
     scene: Scene,
     *,
@@ -55,18 +64,18 @@ def map_gamma(
 
     The path varies the first coordinate on which the law depends; where it depends on a second one, that one follows
     the constraint g = 0. Plain floating-point values: a map shows, and the branch of each state is the exact one.
-    States with the same curve mu_c share a panel, unless they coincide in it.
+    States with the same curve mu_c share a panel, unless their marks would coincide and differ.
 
     Raises InputError for unknown names, and for a scene without symmetric friction or with more than one path.
     """
+    if not has_gamma_map(scene):
+        raise InputError(f"scene {scene.name}: no map: it needs symmetric friction and one path along the contact")
     kernels = make_kernels(scene)
     shape = kernels.derivation.shape
-    if kernels.derivation.critical_friction is None or len(shape) not in (1, 2):
-        raise InputError(f"scene {scene.name}: no map: it needs symmetric friction and one path along the contact")
     grid = make_grid(scene, states=states, keys=keys, parameters=parameters)
     classified = [classify(grid.state(index)) for index in grid.points()]
     coordinate = scene.coordinates[shape[0]]
-    path, friction, variables = _evaluate(kernels, [c.limit.state for c in classified], points)
+    path, friction, variables = _evaluate(kernels, classified, points)
     variables["theorem_branch"] = coded(
         ["state"],
         np.array([code(c.branch.value, BRANCHES) for c in classified]),
@@ -83,10 +92,10 @@ def map_gamma(
 
 
 def _evaluate(
-    kernels: Kernels, states: list[State], points: tuple[int, int]
+    kernels: Kernels, classified: list[Classification], points: tuple[int, int]
 ) -> tuple[xr.Variable, xr.Variable, dict[str, xr.Variable]]:
     """The two axes, and what is drawn over them."""
-    index = kernels.derivation.shape[0]
+    index, states = kernels.derivation.shape[0], [c.limit.state for c in classified]
     coordinate = kernels.scene.coordinates[index]
     places = np.array([state.number(state.q[index]) for state in states])
     values = np.linspace(places.min() - REACH, places.max() + REACH, points[0])
@@ -97,15 +106,26 @@ def _evaluate(
     def number(dims: tuple[str, ...], data: np.ndarray, sentence: str, units: str = "1") -> xr.Variable:
         return xr.Variable(dims, data, {"units": units, "long_name": sentence})
 
-    along, critical, panel = ("state", "path"), np.array([p.critical for p in paths]), _panels(paths, places, own)
+    along, critical = ("state", "path"), np.array([p.critical for p in paths])
+    mapped = [
+        MappedState(state=s, critical=p.critical, friction=p.friction, place=(x, y), branch=c.branch.value)
+        for s, p, x, y, c in zip(states, paths, places, own, classified, strict=True)
+    ]
+    panel = panels_of(mapped)
     gamma = np.array([_gamma(path, friction) for path in paths])
     variables = {
-        "gamma": number((*along, "friction"), gamma, "gamma, the least normal compliance, in plain floats", "SI"),
+        "gamma": number(
+            (*along, "friction"),
+            gamma,
+            "gamma, the least normal compliance, in plain floats",
+            gamma_unit(kernels.scene),
+        ),
         "critical_friction": number(along, critical, "critical coefficient of friction mu_c = a/|b|"),
         "own_friction": number(along, np.array([p.friction for p in paths]), "coefficient of friction of the scene"),
         "state_path": number(("state",), places, f"where the state lies: {coordinate.sentence}", coordinate.unit),
         "state_friction": number(("state",), own, "coefficient of friction of the scene at the state"),
         "panel": number(("state",), panel, "number of the picture; states with one mu_c share it"),
+        "panel_title": text(["state"], panel_titles(mapped, panel), "what tells the state's picture from the others"),
     }
     axis = number(("path",), values, f"coordinate along the contact: {coordinate.sentence}", coordinate.unit)
     return axis, number(("friction",), friction, "coefficient of friction as an independent variable"), variables
@@ -114,23 +134,6 @@ def _evaluate(
 def _gamma(path: _Path, friction: np.ndarray) -> np.ndarray:
     """(path, friction): (a - mu |b|)/|grad g|^2."""
     return (path.a[:, None] - path.b[:, None] * friction) / path.squared[:, None]
-
-
-def _panels(paths: list[_Path], places: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
-    """Numbers without gaps: states share a panel if they have the same critical friction and do not coincide."""
-    seen: list[tuple[np.ndarray, set[tuple[float, float]]]] = []
-    numbers = []
-    for path, place in zip(paths, zip(places, coefficients, strict=True), strict=True):
-        fitting = [
-            i
-            for i, (curve, taken) in enumerate(seen)
-            if place not in taken and np.array_equal(curve, path.critical, equal_nan=True)
-        ]
-        if not fitting:
-            seen.append((path.critical, set()))
-        numbers.append(fitting[0] if fitting else len(seen) - 1)
-        seen[numbers[-1]][1].add(place)
-    return np.array(numbers, dtype=np.int64)
 
 
 def _follow(kernels: Kernels, state: State, values: np.ndarray) -> _Path:

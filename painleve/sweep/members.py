@@ -12,11 +12,12 @@ from painleve.asymptotics.sample import SampleOptions, check_eps, sample_members
 from painleve.asymptotics.witness import find_family
 from painleve.errors import InputError
 from painleve.kernels.compiled import make_kernels
+from painleve.mechanics.norm_units import ball_unit, velocity_unit
 from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import Number
 from painleve.store import provenance
 from painleve.sweep.grid import make_grid
-from painleve.sweep.variables import BRANCHES, LAW_BRANCHES, LIMIT_SETS, ball_unit, code, coded, text, velocity_unit
+from painleve.sweep.variables import BRANCHES, LAW_BRANCHES, LIMIT_SETS, code, coded, text
 from painleve.theory.classification import classify
 from painleve.theory.limit_set import LimitSet
 

@@ -13,6 +13,7 @@ from painleve.errors import InputError
 from painleve.exact.parse import exact_number, parse_expression
 from painleve.kernels.compiled import make_kernels
 from painleve.mechanics.derive import derive
+from painleve.mechanics.norm_units import ACCELERATION, COMPLIANCE
 from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import Number, resolve_parameters
 from painleve.store import provenance
@@ -54,8 +55,8 @@ def map_regimes(
         return xr.Variable(dims, values, {"units": units, "long_name": sentence})
 
     variables = {
-        "slip_compliance": number(names, compliance, "normal compliance a + s b in the sense of the slip", "SI"),
-        "free_acceleration": number(names, acceleration, "normal acceleration of the tip without contact force", "SI"),
+        "slip_compliance": number(names, compliance, "normal compliance a + s b in the sense of the slip", COMPLIANCE),
+        "free_acceleration": number(names, acceleration, "normal acceleration without contact force", ACCELERATION),
         "regime": coded(names, regime, REGIMES, "solutions of the contact problem of accelerations"),
     }
     coordinates = {}

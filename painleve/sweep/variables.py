@@ -9,7 +9,6 @@ import xarray as xr
 
 from painleve.asymptotics.theorem import VerdictStatus
 from painleve.core.codes import ContactMode as LawBranch
-from painleve.mechanics.scene import Scene
 from painleve.store import flags
 from painleve.theory.classification import Branch
 
@@ -19,11 +18,9 @@ __all__ = [
     "LIMIT_SETS",
     "OUTCOMES",
     "STATUSES",
-    "ball_unit",
     "code",
     "coded",
     "text",
-    "velocity_unit",
 ]
 
 OUTCOMES = ("done", "failed")
@@ -46,13 +43,3 @@ def coded(dims: Iterable[str], values: np.ndarray, labels: tuple[str, ...], sent
 def text(dims: Iterable[str], values: np.ndarray | list[str], sentence: str) -> xr.Variable:
     """A variable of text; text has no unit, which is written 1."""
     return xr.Variable(tuple(dims), np.asarray(values, dtype=object), {"long_name": sentence, "units": "1"})
-
-
-def velocity_unit(scene: Scene) -> str:
-    """The units that a Euclidean norm of the scene's velocities mixes, such as "m/s, rad/s"."""
-    return ", ".join(dict.fromkeys(f"{c.unit}/s" for c in scene.coordinates))
-
-
-def ball_unit(scene: Scene) -> str:
-    """The units of a ball's radius eps: those of the coordinates and those of the velocities."""
-    return ", ".join(dict.fromkeys(c.unit for c in scene.coordinates)) + "; " + velocity_unit(scene)

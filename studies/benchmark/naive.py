@@ -59,10 +59,10 @@ def naive_members(limit: LimitSet, dq: np.ndarray, dv: np.ndarray) -> NaiveMembe
     friction."""
     scene, base = limit.state.scene, _rounded(limit)
     v = base.u + dv
-    rows, d = _rows(scene)((base.q + dq).T, base.p), scene.dimension
-    g, w_n, Y_n, a, plus = rows[0], rows[1 : 1 + d], rows[1 + d : 1 + 2 * d], rows[1 + 2 * d], rows[2 + 2 * d]
-    H, Y_t = rows[3 + 2 * d : 3 + 3 * d], rows[3 + 3 * d : 3 + 4 * d]
-    b, C, minus, mu_plus, mu_minus = rows[3 + 4 * d :]
+    rows, parts = _rows(scene)((base.q + dq).T, base.p), rows_of(derive(scene)).parts
+    g, w_n, Y_n, a, plus = (rows[i] for i in (parts.g, parts.w_n, parts.Y_n, parts.a, parts.edge_plus))
+    (H,), (Y_t,) = ([rows[part] for part in tangent] for tangent in (parts.H, parts.Y_t))
+    (b,), (C,), (minus, mu_plus, mu_minus) = (rows[part] for part in (parts.b, parts.C, parts.section))
     v_n, v_t = np.einsum("jn,nj->n", w_n, v), np.einsum("jn,nj->n", H, v)
     determinant = a * C - b * b
     r_n, r_t = (b * v_t - C * v_n) / determinant, (b * v_n - a * v_t) / determinant

@@ -14,10 +14,11 @@ from painleve.asymptotics.methods import METHODS, Method, distance
 from painleve.asymptotics.sample import SAMPLERS, check_eps
 from painleve.errors import InputError
 from painleve.kernels.compiled import make_kernels
+from painleve.mechanics.norm_units import ball_unit, velocity_unit
 from painleve.mechanics.state import State
 from painleve.sets import Bounds
 from painleve.store import provenance
-from painleve.sweep.variables import BRANCHES, ball_unit, code, coded, text, velocity_unit
+from painleve.sweep.variables import BRANCHES, code, coded, text
 from painleve.theory.classification import classify
 from painleve.theory.limit_set import LimitSet
 from studies.benchmark.naive import naive_distance

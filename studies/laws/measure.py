@@ -1,104 +1,72 @@
-"""Law (7) of the paper against Coulomb's law with maximal dissipation, over the slip's direction and the friction."""
+"""Maps of the two laws at two inclinations of a rod in space, and counts of solutions again by exact arithmetic."""
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import xarray as xr
 
-from painleve.core.space.two_laws import compare_laws
-from painleve.errors import InputError
-from painleve.mechanics.derive import derive
-from painleve.mechanics.friction import Disc
-from painleve.mechanics.scene import Scene
-from painleve.mechanics.state import State
-from painleve.store import provenance
-from painleve.sweep.variables import text, velocity_unit
-from painleve.theory.coulomb.problem import problem_at
+from painleve.mechanics.library import load_scene
+from painleve.mechanics.state import State, make_state
+from painleve.theory.coulomb.one_step import Enumeration, coulomb_solutions
+from studies.laws.two_laws import map_laws
+from studies.parts import Progress
 
-__all__ = ["map_laws"]
+__all__ = ["measure", "measure_laws"]
+
+INCLINATIONS = ("pi/4", "atan(2)")
+APPROACHES = (-1.0, -0.1, -0.01, 0.0)
+LARGEST_FRICTION = 4.0
+POINTS, QUICK_POINTS = 300, 60  # frictions of a map; twice as many directions
+CHECKS, QUICK_CHECKS = 20, 3  # of each map
 
 
-def map_laws(
-    states: Sequence[State],
-    *,
-    approaches: Sequence[float],
-    frictions: Sequence[float],
-    directions: int = 181,
-    command: str | None = None,
-) -> xr.Dataset:
-    """How many solutions Coulomb's law has, and how far they are from law (7), at the configurations of the states.
+def measure(*, quick: bool, seed: int, progress: Progress) -> Iterator[tuple[str, xr.Dataset]]:
+    """One dataset, `laws`: maps over friction and direction, by configuration and normal velocity."""
+    size, checks = (QUICK_POINTS, QUICK_CHECKS) if quick else (POINTS, CHECKS)
+    yield "laws", measure_laws(size=size, checks=checks, seed=seed, progress=progress)
 
-    The slip has the speed 1 and turns about, `directions` angles against b from -pi to pi; the contact velocity has the
-    normal part v_n of `approaches` (<= 0; at 0 the tangential problem, law (7) standing for {u-, u_tilde}), and the
-    friction is a disc of each radius of `frictions`. The states' own slips and coefficients are not used. Double
-    precision: a map shows, `coulomb_solutions` decides.
 
-    Raises InputError for states that are not of one scene with a disc of friction, or where b = 0, and for bad numbers.
-    """
-    scenes = {state.scene for state in states}
-    if len(scenes) != 1 or not all(isinstance(scene.contact.section, Disc) for scene in scenes):
-        raise InputError("two laws: give states of one scene whose section of friction is a disc")
-    if not (len(approaches) and len(frictions)) or max(approaches) > 0.0 or min(frictions) <= 0.0 or directions < 3:
-        raise InputError("two laws: give approaches v_n <= 0, coefficients of friction > 0 and 3 directions or more")
-    (scene,) = scenes
-    angles, mu = np.linspace(-np.pi, np.pi, directions), np.array(frictions, dtype=float)
-    shape = (len(states), len(approaches), len(mu), directions)
-    counts, sticks, apart = np.zeros(shape, dtype=np.int64), np.zeros(shape, dtype=np.int64), np.zeros((*shape, 2))
-    critical = np.empty(len(states))
+def measure_laws(*, size: int, checks: int, seed: int, progress: Progress) -> xr.Dataset:
+    """Maps of so many frictions, and `checks` points of each counted by exact arithmetic."""
+    scene = load_scene("spatial_rod")
+    states = [make_state(scene, keys={"theta": theta}) for theta in INCLINATIONS]
+    frictions = LARGEST_FRICTION * (np.arange(size) + 0.5) / size
+    maps = map_laws(states, approaches=APPROACHES, frictions=frictions.tolist(), directions=2 * size + 1)
+    return maps.assign(_checks(maps, states, checks, seed, progress))
+
+
+def _checks(
+    maps: xr.Dataset, states: Sequence[State], count: int, seed: int, progress: Progress
+) -> dict[str, xr.Variable]:
+    """At how many random points of each map exact arithmetic counts as many solutions, of how many."""
+    generator, agree = np.random.default_rng(seed), np.zeros((len(states), maps.sizes["approach"]), np.int64)
+    progress.expect(agree.size)
     for i, state in enumerate(states):
-        G, Y, critical[i] = _local(state)
-        b = G[0, 1:] / np.linalg.norm(G[0, 1:])
-        slips = np.outer(np.cos(angles), b) + np.outer(np.sin(angles), [-b[1], b[0]])
-        for j, v_n in enumerate(approaches):
-            compare_laws(G, Y, float(v_n), slips, mu, counts[i, j], sticks[i, j], apart[i, j])
-    unit = velocity_unit(scene)
+        for j in range(agree.shape[1]):
+            chosen = maps.isel(state=i, approach=j)
+            agree[i, j] = sum(_agrees(chosen, state, generator) for _ in range(count))
+            progress(state.label)
+    sentence = "random points of the map at which exact arithmetic counts as many solutions"
+    return {
+        "checks": xr.Variable((), count, {"long_name": "random points of each map that were checked", "units": "1"}),
+        "agree": xr.Variable(("state", "approach"), agree, {"long_name": sentence, "units": "1"}),
+    }
 
-    def variable(dims: tuple[str, ...], values: np.ndarray, sentence: str, units: str = "1") -> xr.Variable:
-        return xr.Variable(dims, values, {"units": units, "long_name": sentence})
 
-    # arccos(mu_c/mu): the half angle of the slips that friction would drive; none where mu < mu_c
-    with np.errstate(invalid="ignore"):
-        half_angle = np.arccos(critical[:, None] / mu)
-    dims, over = ("state", "approach", "friction", "direction"), ("state", "friction")
-    return xr.Dataset(
-        {
-            "solutions": variable(dims, counts, "number of solutions of Coulomb's law"),
-            "sticking": variable(dims, sticks, "number of those that stick"),
-            "nearest": variable(dims, apart[..., 0], "distance of law (7) from Coulomb's nearest solution", unit),
-            "farthest": variable(dims, apart[..., 1], "distance of Coulomb's farthest solution from law (7)", unit),
-            "critical_friction": variable(("state",), critical, "critical coefficient of friction mu_c = a/|b|"),
-            "driven": variable(over, half_angle, "friction would drive slips up to this angle from b", "rad"),
-            "projected": variable(over, half_angle + np.pi / 2.0, "law (7) has a jump up to this angle from b", "rad"),
-        },
-        {
-            "state": text(["state"], [state.label for state in states], "label of the configuration"),
-            "approach": variable(("approach",), np.array(approaches, dtype=float), "normal velocity v_n over the slip"),
-            "friction": variable(("friction",), mu, "coefficient of friction"),
-            "direction": variable(("direction",), angles, "angle of the slip against b", "rad"),
-        },
-        {
-            "title": "The paper's law (7) and Coulomb's law with maximal dissipation",
-            "kind": "laws",
-            **provenance(scene=scene, scene_digest=_digest(scene), seed=0, command=command),
-        },
+def _agrees(chosen: xr.Dataset, state: State, generator: np.random.Generator) -> bool:
+    """Whether exact arithmetic counts as many solutions at a random point of the grid, read as decimals."""
+    point = chosen.isel(
+        friction=generator.integers(chosen.sizes["friction"]), direction=generator.integers(chosen.sizes["direction"])
     )
+    angle = float(point["direction"])
+    found = _exactly(state, angle, float(point["approach"]), float(point["friction"]))
+    return found == int(point["solutions"])
 
 
-def _local(state: State) -> tuple[np.ndarray, np.ndarray, float]:
-    """G, Y and mu_c, rounded."""
-    problem = problem_at(state)
-    G = np.array([[state.number(x) for x in problem.delassus.row(i)] for i in range(3)])
-    Y = np.array([[state.number(x) for x in problem.responses.row(i)] for i in range(problem.responses.rows)])
-    reach = float(np.linalg.norm(G[0, 1:]))
-    if reach == 0.0:
-        raise InputError(f"two laws: b = 0 at the state {state.label}: no direction to count angles from")
-    return G, Y, G[0, 0] / reach
-
-
-def _digest(scene: Scene) -> str:
-    """Of the matrices that the map is made from: nothing is compiled for it."""
-    d = derive(scene)
-    return hashlib.sha256(str((d.delassus, d.normal_response, d.tangent_response)).encode()).hexdigest()[:16]
+def _exactly(state: State, angle: float, v_n: float, mu: float) -> int | None:
+    """b points away from the centre, against the first axis, at the azimuth 0; a translation has v_n = u_z."""
+    v = [-float(np.cos(angle)), -float(np.sin(angle)), v_n, 0, 0]
+    found = coulomb_solutions(state.scene, state.q, v, parameters={"mu": mu})
+    return len(found.solutions) if found.enumeration is Enumeration.COMPLETE else None

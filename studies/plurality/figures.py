@@ -10,17 +10,19 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from painleve.core.jam_map import jam_fraction, limit_law
 from painleve.plotting.draw import Drawing
-from painleve.plotting.style import GREY, PALETTE, labels_of, legend_below, panels
+from painleve.plotting.style import GREY, PALETTE, legend_below, legend_under, panels, power_of_ten, with_unit
+from painleve.store import labels_of
 
 __all__ = ["DRAWINGS", "draw_initial_layer", "draw_jam_law", "draw_step_sizes"]
 
 COLOURS = {"strict": PALETTE["vermilion"], "kept": PALETTE["blue"]}
 MARKERS = {"strict": "o", "kept": "s"}
 LABELS = {"strict": "strict test $g \\geq 0$", "kept": "tip kept on the floor"}
-RATIOS = np.linspace(0.02, 0.98, 33)
-GROUP_MARKS = {"drift": "o", "invariance": "^"}
+GROUP_MARKS = {"drift": ("o", "measured"), "invariance": ("^", "other $\\alpha$, speeds, starts")}
+SHORT = {"strict": "strict", "kept": "kept"}
+LINES = {"strict": "-", "kept": "--"}
+APART = 1.35  # between neighbouring step sizes, on a logarithmic axis
 
 
 def draw_step_sizes(dataset: xr.Dataset) -> Figure:
@@ -31,6 +33,10 @@ def draw_step_sizes(dataset: xr.Dataset) -> Figure:
     _draw_fractions(narrow, dataset, wide=False)
     for axis, contact in zip(times, ("strict", "kept"), strict=True):
         _draw_times(axis, dataset, contact)
+    low, high = (f(axis.get_ylim()[k] for axis in times) for k, f in enumerate((min, max)))
+    for axis in times:
+        axis.set_ylim(low, high)
+    figure.suptitle(f"Glocker's rod, $r$ = {dataset['ratio'].item():.3f}", fontsize=8.5)
     legend_below(figure, axes, columns=4)
     return figure
 
@@ -52,8 +58,9 @@ def _draw_fractions(axis: Axes, dataset: xr.Dataset, *, wide: bool) -> None:
             label=f"{LABELS[contact]} (95 % interval)",
         )
         axis.plot(middle, chosen["local_map"].values[i], color=colour, linestyle="--", label=f"local map, {contact}")
-        limit = limit_law(dataset["ratio"].item(), strict=contact == "strict")
-        axis.axhline(limit, color=colour, linestyle=":", linewidth=0.8, label=f"limit law, {contact}")
+        axis.axhline(
+            float(dataset["law"][i]), color=colour, linestyle=":", linewidth=0.8, label=f"limit law, {contact}"
+        )
     axis.set_xscale("log" if wide else "linear")
     if not wide:
         axis.locator_params(axis="x", nbins=4)
@@ -80,20 +87,24 @@ def _draw_times(axis: Axes, dataset: xr.Dataset, contact: str) -> None:
 
 
 def draw_jam_law(dataset: xr.Dataset) -> Figure:
-    """Fractions over r, over the drift d of the map (strict test), and over h on fixed slips."""
-    figure, axes = panels(4, columns=2, height=2.6)
-    _draw_ratio(axes[0], dataset)
-    _draw_drift(axes[1], dataset)
-    _draw_approach(axes[2], dataset)
-    _draw_vanishing(axes[3], dataset)
-    legend_below(figure, axes, columns=3)
+    """Fractions over r, over the drift d of the map (strict test), and over h on fixed slips; each with its legend."""
+    figure, axes = panels(4, columns=2, height=3.3)
+    drawings = (_draw_ratio, _draw_drift, _draw_approach, _draw_vanishing)
+    for axis, letter, drawing in zip(axes, "abcd", drawings, strict=True):
+        drawing(axis, dataset)
+        axis.set_title(f"({letter}) {axis.get_title()}", loc="left")
+        axis.set_title("")
+        axis.set_ylabel("fraction that jams")
+        legend_under(axis, columns=2)
     return figure
 
 
-def _of(dataset: xr.Dataset, group: str, contact: str | None = None) -> xr.Dataset:
+def _of(dataset: xr.Dataset, group: str, contact: str | None = None, ratio: float | None = None) -> xr.Dataset:
     chosen = dataset["group"].values == group
     if contact is not None:
         chosen &= labels_of(dataset["contact"]) == contact
+    if ratio is not None:
+        chosen &= dataset["ratio"].values == ratio
     return dataset.isel(case=np.flatnonzero(chosen))
 
 
@@ -104,20 +115,18 @@ def _bars(axis: Axes, x: np.ndarray, one: xr.Dataset, **style: object) -> None:
 
 
 def _draw_ratio(axis: Axes, dataset: xr.Dataset) -> None:
-    for contact in ("strict", "kept"):
-        strict = contact == "strict"
-        curve = [limit_law(float(r), strict=strict) for r in RATIOS]
-        law = "$1/(1+r)$" if strict else "$1-r$"
-        axis.plot(RATIOS, curve, color=COLOURS[contact], label=f"limit law {law}, 0 for $r \\geq 1$")
-        axis.plot([1.0, 2.0], [0.0, 0.0], color=COLOURS[contact], linewidth=2.0 if strict else 1.0)
-        one = _of(dataset, "ratio", contact)
+    for i, contact in enumerate(("strict", "kept")):
+        law = "$1/(1+r)$" if contact == "strict" else "$1-r$"
+        colour, one = COLOURS[contact], _of(dataset, "ratio", contact)
+        axis.plot(
+            dataset["law_ratio"],
+            dataset["limit_law"].values[i],
+            color=colour,
+            linestyle=LINES[contact],
+            label=f"limit {law}; 0 for $r \\geq 1$",
+        )
         _bars(
-            axis,
-            one["ratio"].values,
-            one,
-            color=COLOURS[contact],
-            marker=MARKERS[contact],
-            label=f"measured, {LABELS[contact]}",
+            axis, one["ratio"].values, one, color=colour, marker=MARKERS[contact], label=f"measured, {SHORT[contact]}"
         )
         axis.plot(
             one["ratio"],
@@ -126,96 +135,105 @@ def _draw_ratio(axis: Axes, dataset: xr.Dataset) -> None:
             marker="x",
             markersize=7,
             color=PALETTE["black"],
-            label="local map at the same $h$",
+            label="local map, both tests",
         )
     axis.set_xlabel("ratio of the eigenvalues $r$")
-    axis.set_ylabel("fraction that jams")
-    axis.set_title("over step sizes and starts, smallest $h$")
+    axis.set_title("over step sizes and starts, $h$ small")
 
 
 def _draw_drift(axis: Axes, dataset: xr.Dataset) -> None:
-    colours = [PALETTE[c] for c in ("blue", "sky", "green", "orange", "vermilion", "purple", "black")]
-    grid = np.logspace(-3, 0.7, 25)
-    ratios = np.unique(_of(dataset, "drift")["ratio"])
-    for ratio, colour in zip(ratios, colours, strict=False):
-        curve = [jam_fraction(float(ratio), float(d), strict=True, phases=2000) for d in grid]
-        axis.plot(grid, curve, color=colour, linewidth=0.8, label=f"map, $r$ = {ratio:.3g}")
-        for group, marker in GROUP_MARKS.items():
-            one = _of(dataset, group, "strict")
-            one = one.isel(case=np.flatnonzero(one["ratio"].values == ratio))
-            _bars(axis, one["drift"].values, one, color=colour, marker=marker)
+    styles = zip(("blue", "sky", "green", "orange"), ("-", "--", "-.", ":"), strict=True)
+    for ratio, curve, (name, line) in zip(
+        dataset["map_ratio"].values, dataset["map_fraction"].values, styles, strict=False
+    ):
+        axis.plot(
+            dataset["map_drift"], curve, color=PALETTE[name], linestyle=line, label=f"local map, $r$ = {ratio:.3g}"
+        )
+        for group, (marker, _) in GROUP_MARKS.items():
+            one = _of(dataset, group, "strict", ratio)
+            _bars(axis, one["drift"].values, one, color=PALETTE[name], marker=marker)
+    for marker, label in GROUP_MARKS.values():
+        axis.plot([], [], linestyle="none", marker=marker, color=GREY, label=label)
     axis.set_xscale("log")
-    axis.set_xlabel("drift $d$ of the local map, strict test")
-    axis.set_ylabel("fraction that jams")
-    axis.set_title("triangles: other $\\alpha$, speeds and starts")
+    axis.set_xlabel("drift $d$ of the local map")
+    axis.set_title("at any step size, strict test")
 
 
 def _draw_approach(axis: Axes, dataset: xr.Dataset) -> None:
     for contact in ("strict", "kept"):
-        one = _of(dataset, "approach", contact)
-        _bars(axis, one["step"].values, one, color=COLOURS[contact], marker=MARKERS[contact])
-        axis.plot(one["step"], one["local_map"], color=COLOURS[contact], linestyle="--")
-        axis.plot(one["step"], one["law"], color=COLOURS[contact], linestyle=":")
+        colour, one = COLOURS[contact], _of(dataset, "approach", contact)
+        _bars(axis, one["step"].values, one, color=colour, marker=MARKERS[contact], label=f"measured, {SHORT[contact]}")
+        axis.plot(one["step"], one["local_map"], color=colour, linestyle="--", label=f"local map, {SHORT[contact]}")
+        axis.plot(one["step"], one["law"], color=colour, linestyle=":", label=f"limit, {SHORT[contact]}")
     axis.set_xscale("log")
     axis.set_xlabel("step size $h$ (s)")
-    axis.set_ylabel("fraction that jams")
-    axis.set_title("one slip, $r < 1$; dashed: map, dotted: limit")
+    axis.set_title(f"one slip, $r$ = {_ratios(dataset, 'approach')}")
 
 
 def _draw_vanishing(axis: Axes, dataset: xr.Dataset) -> None:
-    one = _of(dataset, "vanishing")
-    for ratio, marker in zip(np.unique(one["ratio"]), "ovD", strict=False):
-        case = one.isel(case=np.flatnonzero(one["ratio"].values == ratio))
-        _bars(
-            axis, case["step"].values, case, color=COLOURS["strict"], marker=marker, label=f"measured, $r$ = {ratio:g}"
-        )
-        axis.plot(case["step"], case["local_map"], color=COLOURS["strict"], linestyle="--")
+    ratios = np.unique(_of(dataset, "vanishing")["ratio"])
+    for ratio, marker, name in zip(ratios, "^vD", ("purple", "green", "black"), strict=False):
+        one, colour = _of(dataset, "vanishing", ratio=ratio), PALETTE[name]
+        _bars(axis, one["step"].values, one, color=colour, marker=marker, label=f"measured, $r$ = {ratio:g}")
+        axis.plot(one["step"], one["local_map"], color=colour, linestyle="--", label=f"local map, $r$ = {ratio:g}")
     axis.set_xscale("log")
+    axis.set_ylim(bottom=0.0)
     axis.set_xlabel("step size $h$ (s)")
-    axis.set_ylabel("fraction that jams")
-    axis.set_title("one slip, $r > 1$, strict test; dashed: map")
+    axis.set_title(f"one slip, $r$ = {_ratios(dataset, 'vanishing')}, strict test; the limit is 0")
+
+
+def _ratios(dataset: xr.Dataset, group: str) -> str:
+    return " or ".join(f"{ratio:g}" for ratio in np.unique(_of(dataset, group)["ratio"]))
 
 
 def draw_initial_layer(dataset: xr.Dataset) -> Figure:
-    """For each state the fraction that jumps over eps/h, and below the two excesses between A and right velocities."""
-    count = dataset.sizes["state"]
+    """For each state the fraction that jumps over eps/h, and below the two excesses between A and right velocities.
+
+    Step sizes stand beside each other at each eps/h, for their marks would cover each other.
+    """
+    count, steps = dataset.sizes["state"], dataset["step"].values
     figure, axes = panels(2 * count, columns=count, height=2.2)
     for i in range(count):
         above, below, one = axes[i], axes[count + i], dataset.isel(state=i)
-        for j, (colour, marker) in enumerate(zip(("blue", "green", "vermilion"), "os^", strict=True)):
-            if j < dataset.sizes["step"]:
-                _draw_layer(above, below, one.isel(step=j), PALETTE[colour], marker)
+        for j, (step, name, marker) in enumerate(zip(steps, ("blue", "green", "vermilion"), "os^", strict=False)):
+            beside = APART ** (j - (len(steps) - 1) / 2.0)
+            _draw_layer(above, below, one.isel(step=j), beside, PALETTE[name], marker, f"$h$ = {power_of_ten(step)} s")
         above.set_title(str(one["state"].item()))
-        above.set_ylabel("fraction that jumps")
-        below.set_ylabel(f"excess ({dataset['excess_of_A'].attrs['units']})")
-        below.set_yscale("log")
         for axis in (above, below):
             axis.set_xscale("log")
-            axis.set_xlabel("$\\varepsilon/h$ (1/s)")
+        above.set_ylim(-0.03, 1.03)
+        above.tick_params(labelbottom=False)
+        below.set_yscale("log")
+        below.set_ylim(_span(dataset))
+        below.set_xlabel("$\\varepsilon/h$ (1/s)")
+        below.plot([], [], linestyle="none", marker="^", color=GREY, label="of right velocities from $A$, lower bound")
+        below.plot(
+            [],
+            [],
+            linestyle="none",
+            marker="v",
+            markerfacecolor="none",
+            color=GREY,
+            label="of $A$ from right velocities, upper bound",
+        )
+    axes[0].set_ylabel("fraction that jumps\n(95 % interval)")
+    axes[count].set_ylabel(with_unit("excess", dataset["excess_of_A"], broken=True))
     legend_below(figure, axes, columns=3)
     return figure
 
 
-def _draw_layer(above: Axes, below: Axes, one: xr.Dataset, colour: str, marker: str) -> None:
-    ratio, step = one["ratio"].values, one["step"].item()
-    _bars(above, ratio, one, color=colour, marker=marker, label=f"$h$ = {step:g} s")
-    below.plot(
-        ratio,
-        one["excess_from_A"],
-        color=colour,
-        marker="^",
-        linestyle="none",
-        label="of right velocities from $A$, lower bound",
-    )
-    below.plot(
-        ratio,
-        one["excess_of_A"],
-        color=colour,
-        marker="v",
-        markerfacecolor="none",
-        linestyle="none",
-        label="of $A$ from right velocities, upper bound",
-    )
+def _span(dataset: xr.Dataset) -> tuple[float, float]:
+    """The range of both excesses."""
+    values = np.concatenate([dataset[name].values.ravel() for name in ("excess_from_A", "excess_of_A")])
+    positive = values[values > 0.0]
+    return float(positive.min()) / 1.5, float(positive.max()) * 1.5
+
+
+def _draw_layer(above: Axes, below: Axes, one: xr.Dataset, beside: float, colour: str, marker: str, label: str) -> None:
+    place = one["ratio"].values * beside
+    _bars(above, place, one, color=colour, marker=marker, label=label)
+    below.plot(place, one["excess_from_A"], color=colour, marker="^", linestyle="none")
+    below.plot(place, one["excess_of_A"], color=colour, marker="v", markerfacecolor="none", linestyle="none")
 
 
 DRAWINGS: Mapping[str, Drawing] = MappingProxyType(

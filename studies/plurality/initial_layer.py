@@ -18,9 +18,10 @@ from painleve.dynamics.fixed_step import empty_track
 from painleve.dynamics.start import Start, as_start
 from painleve.errors import InputError
 from painleve.kernels.motion.compiled import make_motion
+from painleve.mechanics.norm_units import ball_unit, velocity_unit
 from painleve.mechanics.state import State
 from painleve.store import provenance
-from painleve.sweep.variables import ball_unit, text, velocity_unit
+from painleve.sweep.variables import text
 from painleve.theory.limit_set import limit_set
 
 __all__ = ["sweep_initial_layer"]

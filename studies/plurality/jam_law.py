@@ -169,7 +169,11 @@ def measure_jam_law(
         "slip": ([c.slip for c in cases], "slip velocity at the start", "m/s"),
         "step": ([c.step for c in cases], "middle of the window of step sizes", "s"),
         "window": ([c.window for c in cases], "relative half width of the window of step sizes", "1"),
-        "amplitude": ([c.amplitude for c in cases], "amplitude K of the slip, beta = -K x^r - D x/(1 - r)", "SI"),
+        "amplitude": (
+            [c.amplitude for c in cases],
+            "amplitude K of the slip, beta = -K x^r - D x/(1 - r)",
+            "m/(s^2 rad^r)",
+        ),
         "distance": ([c.distance for c in cases], "distance of the starts from the edge, in the middle", "rad"),
         "drift": ([c.drift for c in cases], "drift d of the local map at this step size", "1"),
         "neglected": ([c.neglected for c in cases], "what the map leaves out: beta/c at the last contacts", "1"),

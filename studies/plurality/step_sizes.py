@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from painleve.core.jam_map import jam_fraction
+from painleve.core.jam_map import jam_fraction, limit_law
 from painleve.core.motion_codes import Ending, MemberOutcome
 from painleve.dynamics.ensemble import run_ensemble
 from painleve.dynamics.genot_brogliato import SingularPoint, singular_point
@@ -168,8 +168,16 @@ def _dataset(
         "time": variable(each, members[1], "when the first thing happened to them", "s"),
         "outcome": coded(each, members[2], OUTCOMES, "what happened to them first"),
         "instant": variable((), approach.instant, "when the exact slip reaches the singular point", "s"),
-        "amplitude": variable((), approach.amplitude, "amplitude K of the exact slip near the point", "SI"),
-        "amplitude_spread": variable((), approach.amplitude_spread, "how far two estimates of K differ", "SI"),
+        "amplitude": variable((), approach.amplitude, "amplitude K of the exact slip near the point", "m/(s^2 rad^r)"),
+        "amplitude_spread": variable(
+            (), approach.amplitude_spread, "how far two estimates of K differ", "m/(s^2 rad^r)"
+        ),
+        "law": variable(
+            ("contact",),
+            [limit_law(approach.point.ratio, strict=contact == "strict") for contact in CONTACTS],
+            "limit of the fraction as h tends to 0, by the jam law",
+            "1",
+        ),
         "ratio": variable((), approach.point.ratio, "ratio r of the eigenvalues there", "1"),
     }
     coordinates = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -18,7 +19,7 @@ from studies.reference.rod import ALPHA, MU, T, critical_friction
 from studies.reference.slip import Arc
 from studies.reference.slips import ABOVE, BELOW, NEAREST, fan
 
-__all__ = ["as_dataset"]
+__all__ = ["STATUSES", "as_dataset"]
 
 ALPHAS = (1, 2, 3, 6)
 ANGLES = np.radians(np.linspace(5.0, 88.0, 167))
@@ -52,15 +53,22 @@ def _number(dims: tuple[str, ...], values: object, sentence: str, unit: str) -> 
 def _facts(found: Sequence[Reproduction]) -> dict[str, xr.Variable]:
     columns = {
         "statement": ([r.fact.statement for r in found], "what is stated in short"),
+        "says": ([r.fact.says for r in found], "what the source says in other words"),
         "published": ([r.fact.value for r in found], "value as it is published"),
+        "value_kind": ([r.fact.kind.value for r in found], "what the published value is"),
+        "basis": ([r.fact.basis.value for r in found], "where the published value was seen"),
         "found": ([str(r.found.value) for r in found], "value that was found here"),
         "difference": ([r.difference or "-" for r in found], "found minus published value"),
         "route": ([r.found.route for r in found], "how the value was found"),
+        "obstacle": ([r.found.obstacle for r in found], "why the fact lies outside, empty otherwise"),
         "source": ([r.fact.source.citation for r in found], "where it is published"),
+        "source_read": ([r.fact.source.read for r in found], "how much of the source could be read"),
     }
     variables = {name: text(["fact"], values, sentence) for name, (values, sentence) in columns.items()}
     codes = np.array([code(r.status.name.lower(), STATUSES) for r in found])
     variables["status"] = coded(["fact"], codes, STATUSES, "whether the fact was reproduced")
+    gaps = [math.nan if r.found.gap is None else r.found.gap for r in found]
+    variables["gap"] = _number(("fact",), gaps, "relative difference of a second route; NaN without one", "1")
     return variables
 
 

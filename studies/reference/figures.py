@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from painleve.plotting.draw import Drawing
-from painleve.plotting.style import GREY, PALETTE, panels
+from painleve.plotting.style import GREY, PALETTE, entitle, legend_under, panels
 
 __all__ = ["DRAWINGS", "draw_reference"]
 
@@ -25,6 +25,9 @@ def draw_reference(dataset: xr.Dataset) -> Figure:
     figure, (left, right) = panels(2, columns=2, height=3.2)
     _draw_friction(left, dataset)
     _draw_forces(right, dataset)
+    left.set_title("lines: derived; marks: published")
+    right.set_title("smooth slips towards the edge of the band")
+    entitle(figure, dataset)
     return figure
 
 
@@ -45,32 +48,30 @@ def _draw_friction(axis: Axes, dataset: xr.Dataset) -> None:
         dataset["least_friction"],
         marker="o",
         color=PALETTE["vermilion"],
-        label="$\\mu_P$, reference",
+        label="$\\mu_P$, published",
         **marks,
     )
     for edges in np.degrees(dataset["edges"]):
         axis.plot(
-            edges, dataset["edge_friction"], marker="s", color=PALETTE["sky"], label="band edge, reference", **marks
+            edges, dataset["edge_friction"], marker="s", color=PALETTE["sky"], label="band edge, published", **marks
         )
     axis.plot(
         60.0,
         dataset["sixty_degrees_friction"],
         marker="D",
         color=PALETTE["yellow"],
-        label="rod at 60°, reference",
+        label="rod at 60°, published",
         **marks,
     )
     axis.axhline(
-        float(dataset["singular_friction"]), color=GREY, linewidth=0.8, label="$\\mu_C$, reference ($\\alpha$ = 3)"
+        float(dataset["singular_friction"]), color=GREY, linewidth=0.8, label="$\\mu_C$, published ($\\alpha$ = 3)"
     )
     axis.set_ylim(0.0, 4.0)
     axis.set_xlim(0.0, 90.0)
     axis.set_xticks(range(0, 91, 15))
     axis.set_xlabel("inclination $\\theta$ (degrees)")
     axis.set_ylabel("coefficient of friction")
-    handles, labels = axis.get_legend_handles_labels()
-    entries = dict(zip(labels, handles, strict=True))
-    axis.legend(list(entries.values()), list(entries), loc="upper center", ncols=2, bbox_to_anchor=(0.5, -0.2))
+    legend_under(axis, columns=2)
 
 
 def _draw_forces(axis: Axes, dataset: xr.Dataset) -> None:
@@ -92,9 +93,7 @@ def _draw_forces(axis: Axes, dataset: xr.Dataset) -> None:
     axis.invert_xaxis()
     axis.set_xlabel("distance to the edge of the band (rad)")
     axis.set_ylabel("contact force / (mass × gravity)")
-    handles, labels = axis.get_legend_handles_labels()
-    entries = dict(zip(labels, handles, strict=True))
-    axis.legend(list(entries.values()), list(entries), loc="upper center", ncols=2, bbox_to_anchor=(0.5, -0.2))
+    legend_under(axis, columns=2)
 
 
 DRAWINGS: Mapping[str, Drawing] = MappingProxyType({"reference": draw_reference})

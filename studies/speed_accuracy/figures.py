@@ -11,7 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from painleve.plotting.draw import Drawing
-from painleve.plotting.style import GREY, PALETTE, Mark, labels_of, legend_below, panels, spoken
+from painleve.plotting.style import GREY, PALETTE, THEOREM_MARKS, Mark, legend_below, panels, spoken
+from painleve.store import labels_of
 
 __all__ = ["DRAWINGS", "draw_work_precision"]
 
@@ -42,7 +43,7 @@ def draw_work_precision(dataset: xr.Dataset) -> Figure:
         one = dataset.isel(state=i)
         for axis, work in zip(axes[2 * i : 2 * i + 2], WORK, strict=True):
             _draw_panel(axis, one, work)
-        name = spoken(f"{one['state'].item()}: {labels_of(one['theorem_branch']).item()}")
+        name = f"{spoken(one['state'].item())}: {THEOREM_MARKS[labels_of(one['theorem_branch']).item()].label}"
         axes[2 * i].set_title(name, loc="left")
         axes[2 * i].set_ylabel("relative error")
     _share_axes(axes, dataset)

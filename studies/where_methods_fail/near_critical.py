@@ -13,10 +13,11 @@ from painleve.asymptotics.methods import distance
 from painleve.asymptotics.sample import check_eps
 from painleve.errors import InputError
 from painleve.kernels.compiled import make_kernels
+from painleve.mechanics.norm_units import ball_unit, velocity_unit
 from painleve.mechanics.scene import Scene
 from painleve.mechanics.state import Number, make_state
 from painleve.store import provenance
-from painleve.sweep.variables import BRANCHES, ball_unit, code, coded, text, velocity_unit
+from painleve.sweep.variables import BRANCHES, code, coded, text
 from painleve.theory.classification import Branch, classify
 from painleve.theory.limit_set import LimitSet
 
@@ -109,6 +110,12 @@ def _case(
                 ("value", "eps"), lower, "largest lower bound on e(A, A_eps); NaN: none", unit
             ),
             "excess_A_Aeps_upper": number(("value", "eps"), upper, "least upper bound on e(A, A_eps)", unit),
+            "distance_as_read": number(
+                ("value", "eps"),
+                np.fmax(forward, upper),
+                "d_H as a reader takes it: the larger of the lower bound on e(A_eps, A) and the upper on e(A, A_eps)",
+                unit,
+            ),
             "gap": number(("value",), np.array(gaps), "relative distance of the parameter to its critical value", "1"),
             "half_jump": number(("value",), jumps / 2.0, "half the distance between u- and u_tilde", unit),
             "theorem_branch": coded(["value"], codes, BRANCHES, "branch of Theorem 1, by exact arithmetic"),

@@ -16,9 +16,10 @@ from painleve.asymptotics.witness import find_witness
 from painleve.core.codes import ContactMode
 from painleve.errors import InputError
 from painleve.kernels.compiled import make_kernels
+from painleve.mechanics.norm_units import ball_unit
 from painleve.mechanics.state import State
 from painleve.store import provenance
-from painleve.sweep.variables import LAW_BRANCHES, ball_unit, text
+from painleve.sweep.variables import LAW_BRANCHES, text
 from painleve.theory.classification import classify
 from painleve.theory.limit_set import LimitSet
 from studies.benchmark.naive import naive_members, point_distances, uniform_ball
@@ -27,6 +28,7 @@ __all__ = ["QUANTITIES", "sweep_rounding"]
 
 QUANTITIES = ("gamma", "v_n", "distance")
 ARITHMETICS: tuple[Arithmetic, ...] = ("plain", "taylor")
+SLIPS = [LAW_BRANCHES.index(mode.label) for mode in (ContactMode.SLIP_PLUS, ContactMode.SLIP_MINUS)]
 FRACTIONS = (0.1, 0.3, 0.5, 0.7, 0.9)  # of the way from u- to u_tilde
 
 
@@ -66,7 +68,7 @@ def sweep_rounding(
     source = provenance(scene=state.scene, scene_digest=make_kernels(state.scene).digest, seed=seed, command=command)
     title = f"Plain and cancellation-free arithmetic at {state.scene.name} {state.label}"
     return dataset.assign_coords(eps=xr.Variable(("eps",), np.array(radii), unit)).assign_attrs(
-        {"title": title, "kind": "rounding", **source}
+        {"title": title, "kind": "rounding", "state": state.label, **source}
     )
 
 
@@ -99,6 +101,8 @@ def _at_eps(problem: LocalProblem, eps: float, members: int, samples: int, seed:
             "distance that cancellation-free arithmetic finds against that of the true member beside it, relative",
         ),
         "counts": number(("arithmetic", "law_branch"), counts, "samples by branch of the law; -1 where not run"),
+        "slips": number(("arithmetic",), np.maximum(counts[:, SLIPS], 0).sum(axis=1), "how many of the samples slip"),
+        "samples": number((), samples, "number of samples of A_eps"),
     }
     coordinates = {
         "quantity": text(["quantity"], list(QUANTITIES), "number that is evaluated near the state"),
@@ -141,12 +145,12 @@ def _witness_error(problem: LocalProblem, eps: float) -> float:
 
 def _quantities(problem: LocalProblem, member: Member) -> tuple[float, float, float]:
     """gamma |grad g|^2 on the edge that attains it, v_n and dist(S, A), to dozens of digits before they are rounded."""
-    d, edge = problem.dimension, "edge_plus" if problem.limit.edge == 1 else "edge_minus"
+    table = problem.kernels.rows
     with flint.ctx.workprec(BITS):
         rows, u = row_balls(problem, [flint.arb(float(x)) for x in member.dq]), base_balls(problem)[2]
         v = [x + flint.arb(float(y)) for x, y in zip(u, member.dv, strict=True)]
-        v_n = sum((w * x for w, x in zip(rows[1 : 1 + d], v, strict=True)), flint.arb(0))
-        gamma = rows[problem.kernels.rows.index(edge)]
+        v_n = sum((w * x for w, x in zip(rows[table.parts.w_n], v, strict=True)), flint.arb(0))
+        gamma = rows[table.edge(problem.limit.edge)]
         return float(gamma.mid()), float(v_n.mid()), sum(member.distance) / 2.0
 
 

@@ -13,9 +13,9 @@ from painleve.asymptotics.witness import find_family
 from painleve.core.codes import ContactMode
 from painleve.errors import InputError
 from painleve.kernels.compiled import make_kernels
+from painleve.mechanics.norm_units import ball_unit, velocity_unit
 from painleve.mechanics.state import State
 from painleve.store import provenance
-from painleve.sweep.variables import ball_unit, velocity_unit
 from painleve.theory.classification import classify
 
 __all__ = ["sweep_sampled_bound"]
@@ -70,4 +70,4 @@ def sweep_sampled_bound(
     }
     source = provenance(scene=scene, scene_digest=make_kernels(scene).digest, seed=seed, command=command)
     title = f"Sampled bounds on e(A, A_eps) at {scene.name} {state.label}, {sampler} points"
-    return xr.Dataset(variables, coordinates, {"title": title, "kind": "sampled_bound", **source})
+    return xr.Dataset(variables, coordinates, {"title": title, "kind": "sampled_bound", "state": state.label, **source})
