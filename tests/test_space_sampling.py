@@ -15,6 +15,7 @@ from painleve.asymptotics.member import make_member
 from painleve.asymptotics.sample import SampleOptions, _Stream, sample_distance, sample_members
 from painleve.core.codes import ContactMode
 from painleve.core.sampling import BLOCK
+from painleve.errors import InputError
 from painleve.kernels.compiled import make_kernels
 from painleve.mechanics.friction import Polygon
 from painleve.mechanics.library import load_scene
@@ -211,3 +212,24 @@ def test_sampled_members_in_space_are_the_law_at_their_offsets():
         member = make_member(problem, found["dq"][i], found["dv"][i])
         assert int(member.branch) == found["branch"][i]
         assert found["offset"][i] == pytest.approx(member.offset, abs=1e-12)
+
+
+@pytest.mark.parametrize("mu", ["1e-60", "1e-90", "1e-110", "1e-140"])
+def test_members_with_vanishing_friction_are_those_of_little_friction(mu):
+    """mu^4, the determinant of Q, is no double from 1e-81 downwards."""
+    options = SampleOptions(samples=20_000, threads=1)
+    little, none = (
+        sample_distance(
+            limit_set(make_state(load_scene("spatial_rod"), "sliding", parameters={"mu": m})), 1e-2, options
+        )
+        for m in ("1e-14", mu)
+    )
+    assert none.counts == little.counts
+    for mine, theirs in ((none.excess_Aeps_A, little.excess_Aeps_A), (none.excess_A_Aeps, little.excess_A_Aeps)):
+        np.testing.assert_allclose(mine.member.offset, theirs.member.offset, rtol=1e-10, atol=1e-14)
+
+
+def test_friction_too_small_for_doubles_is_refused_by_its_size():
+    limit = limit_set(make_state(load_scene("spatial_rod"), "sliding", parameters={"mu": "1e-150"}))
+    with pytest.raises(InputError, match="coefficient of friction of 1e-150 is too small"):
+        sample_distance(limit, 1e-2)

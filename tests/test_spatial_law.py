@@ -198,6 +198,25 @@ def test_without_friction_the_impulse_is_normal_and_no_number_is_undefined():
         )
 
 
+@pytest.mark.parametrize(
+    "mu", [1e-25, 1e-31, 1e-45, 1e-55, 1e-62, 1e-70, 1e-90, 1e-155, 1e-162, 1e-163, 1e-200, 1e-300]
+)
+def test_friction_that_vanishes_beside_one_opposes_the_slip_of_a_frictionless_impact(mu):
+    """The energy's second-order terms go like mu^2, and vanish below 1e-162; products of them vanish earlier."""
+    rng = np.random.default_rng(4)
+    for _ in range(50):
+        L, v = rng.normal(size=(3, 3)), rng.normal(size=3) - np.array([3.0, 0.0, 0.0])
+        G = L @ L.T + 0.1 * np.eye(3)
+        b, C = mu * G[0, 1:], mu * (mu * G[1:, 1:])
+        r = disc_impulse(
+            G[0, 0], G[0, 0] - np.hypot(*b), b[0], b[1], C[0, 0], C[0, 1], C[1, 1], v[0], mu * v[1], mu * v[2]
+        )
+        slip = v[1:] - G[0, 1:] * (v[0] / G[0, 0])
+        expected = -v[0] / G[0, 0] * np.array([1.0, *(-slip / np.linalg.norm(slip))])
+        np.testing.assert_allclose(r[:3], expected, rtol=1e-9, atol=1e-12)
+        assert r[3] == ContactMode.SLIP
+
+
 def test_nothing_happens_where_the_normal_velocity_is_not_outward():
     contact = Contact(np.random.default_rng(0), -0.3)
     for v_n in (0.0, 1e-300, 1.0):

@@ -79,6 +79,11 @@ def test_a_sweep_in_which_everything_fails_says_why_in_one_line() -> None:
         sweep_distances(ROD, eps=[1e-2], states=["paradox"], over={"mu": ["-1"]}, options=FEW)
 
 
+def test_a_repeated_eps_is_measured_once() -> None:
+    found = sweep_distances(ROD, eps=[1e-2, 1e-3, 1e-2], states=["paradox"], options=FEW)
+    assert found.eps.values.tolist() == [1e-2, 1e-3]
+
+
 def test_swept_values_are_exact_and_not_the_floats_beside_them() -> None:
     # Both round to the same float, but only 4/3 is the least critical friction.
     values = ["4/3", "1.3333333333333333"]

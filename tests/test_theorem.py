@@ -257,6 +257,22 @@ def test_missing_evidence_decides_nothing(state):
     assert judge(found, [one]).slope is None
 
 
+@pytest.mark.parametrize("state", POSITIVE_BRANCHES)
+def test_a_repeated_eps_counts_once(state):
+    """The bounds fall like eps^1 between the first two, and not at all to the third."""
+    found = classification_of(*state)
+    sizes = {1e-2: 1e-2, 1e-3: 1e-3, 1e-4: 1e-3}
+    evidence = [made_up(found, e, Bounds.at_least(x), Bounds.exactly(0.0), Bounds.exactly(x)) for e, x in sizes.items()]
+    once = judge(found, evidence)
+    assert once.slope == pytest.approx(0.5)
+    for repeated in (
+        [*evidence, evidence[2], evidence[2]],
+        [evidence[0], *evidence],
+        [e for e in evidence for _ in "ab"],
+    ):
+        assert judge(found, repeated) == once
+
+
 def test_without_witnesses_indeterminacy_is_not_decided():
     found = classification_of("slender_rod", "double_zero")
     evidence = [made_up(found, e, Bounds.exactly(e), Bounds.at_most(e), Bounds.exactly(e)) for e in (1e-2, 1e-3)]

@@ -26,7 +26,7 @@ from painleve.sets import Bounds, excess_of_segment_from_profile
 from painleve.theory.domain import check_domain
 from painleve.theory.limit_set import LimitSet
 
-__all__ = ["SAMPLERS", "SampleOptions", "check_eps", "sample_distance", "sample_members"]
+__all__ = ["SAMPLERS", "SampleOptions", "check_eps", "check_radii", "sample_distance", "sample_members"]
 
 SAMPLERS = tuple(s.name.lower() for s in Sampler)
 LANE_BLOCKS = 1024  # 800 thousand samples: some ten milliseconds, so that progress and Ctrl-C come through
@@ -188,6 +188,17 @@ def check_eps(eps: float) -> float:
     if not SMALLEST_EPS <= value <= LARGEST_EPS:
         raise InputError(f"eps: {eps} must lie between {SMALLEST_EPS:g} and {LARGEST_EPS:g}")
     return value
+
+
+def check_radii(values: Iterable[float]) -> list[float]:
+    """Each eps once, in the order in which they are given: one that is repeated must not count twice in a slope.
+
+    Raises InputError as check_eps does, and if there is none.
+    """
+    radii = list(dict.fromkeys(check_eps(value) for value in values))
+    if not radii:
+        raise InputError("eps: no values; give at least one")
+    return radii
 
 
 def sample_distance(limit: LimitSet, eps: float, options: SampleOptions | None = None) -> Distance:

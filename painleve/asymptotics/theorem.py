@@ -73,13 +73,17 @@ def collect(classification: Classification, eps: float, measure: Callable[[Limit
 
 
 def judge(classification: Classification, evidence: Sequence[Evidence]) -> Verdict:
-    """What the evidence says of the branch's statement.
+    """What the evidence says of the branch's statement; of a repeated eps the first counts.
 
     CONSISTENT rests on one-sided numbers, PROVED on enclosures at every eps given (the limit itself is the theorem's).
     REFUTED needs a bound that the statement forbids whatever happens at smaller eps. Balls are nested, so e(A, A_eps)
     can only grow as eps falls, and a lower bound on it does; e(A_eps, A) can always fall later, as it does where mu is
     so near to critical that eps does not resolve the difference: numbers that have not begun to fall decide nothing.
     """
+    once: dict[float, Evidence] = {}
+    for e in evidence:
+        once.setdefault(e.eps, e)
+    evidence = list(once.values())
     forward = [_forward(classification, e) for e in evidence]
     rate = slope([e.eps for e in evidence], [bounds.lower or 0.0 for bounds in forward])
     status, reason = _status(classification, evidence, rate)

@@ -11,7 +11,7 @@ import xarray as xr
 
 from painleve.asymptotics.distance import Distance
 from painleve.asymptotics.methods import distance, find_method
-from painleve.asymptotics.sample import check_eps
+from painleve.asymptotics.sample import check_radii
 from painleve.asymptotics.theorem import collect, judge
 from painleve.errors import InputError
 from painleve.kernels.compiled import make_kernels
@@ -47,9 +47,7 @@ def sweep_distances(
 
     Raises InputError for bad eps, names, values and methods, and where every single point fails.
     """
-    radii = np.array([check_eps(value) for value in eps])
-    if radii.size == 0:
-        raise InputError("eps: no values; give at least one")
+    radii = np.array(check_radii(eps))
     chosen = find_method(method)
     options = chosen.options() if options is None else options
     grid = make_grid(scene, states=states, keys=keys, parameters=parameters, over=over)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from painleve.asymptotics.sample import SampleOptions, check_eps, sample_members
+from painleve.asymptotics.sample import SampleOptions, check_radii, sample_members
 from painleve.asymptotics.witness import find_family
 from painleve.errors import InputError
 from painleve.kernels.compiled import make_kernels
@@ -45,10 +45,8 @@ def sweep_members(
 
     Raises InputError for bad eps, names and values, more than 100000 samples, and a limit set that is undecided.
     """
-    radii = [check_eps(value) for value in eps]
+    radii = check_radii(eps)
     options = options or SampleOptions(samples=4096, sampler="uniform")
-    if not radii:
-        raise InputError("eps: no values; give at least one")
     if options.samples > MOST_MEMBERS:
         raise InputError(f"samples: {options.samples} are more than a picture shows; at most {MOST_MEMBERS}")
     grid = make_grid(scene, states=states, keys=keys, parameters=parameters)

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from painleve.asymptotics.methods import distance
-from painleve.asymptotics.sample import check_eps
+from painleve.asymptotics.sample import check_radii
 from painleve.errors import InputError
 from painleve.kernels.compiled import make_kernels
 from painleve.mechanics.norm_units import ball_unit, velocity_unit
@@ -59,7 +59,7 @@ def sweep_near_critical(
     All cases need as many exponents.
     Raises InputError for no cases, bad eps and states that do not exist.
     """
-    radii = [check_eps(value) for value in eps]
+    radii = check_radii(eps)
     if not (cases and radii and methods) or len({len(case.exponents) for case in cases}) != 1:
         raise InputError("near a critical value: give eps, methods, and cases with equally many exponents")
     parts = [_case(case, radii, methods, isolated, progress) for case in cases]

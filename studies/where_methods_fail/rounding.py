@@ -11,7 +11,7 @@ import xarray as xr
 from painleve.asymptotics.local import BITS, Arithmetic, LocalProblem, make_local_problem
 from painleve.asymptotics.member import Member, base_balls, make_member, row_balls
 from painleve.asymptotics.optimise import optimise_distance
-from painleve.asymptotics.sample import SampleOptions, check_eps, sample_distance
+from painleve.asymptotics.sample import SampleOptions, check_radii, sample_distance
 from painleve.asymptotics.witness import find_witness
 from painleve.core.codes import ContactMode
 from painleve.errors import InputError
@@ -51,7 +51,7 @@ def sweep_rounding(
 
     Raises InputError for bad eps, no members, and a limit set that is not a segment.
     """
-    radii = [check_eps(value) for value in eps]
+    radii = check_radii(eps)
     limit = classify(state).limit
     if not radii or members < 1:
         raise InputError("eps, members: give at least one value and one member")

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import xarray as xr
 
-from painleve.asymptotics.sample import SampleOptions, check_eps, sample_distance
+from painleve.asymptotics.sample import SampleOptions, check_radii, sample_distance
 from painleve.asymptotics.theorem import SHADOW
 from painleve.asymptotics.witness import find_family
 from painleve.core.codes import ContactMode
@@ -37,9 +37,9 @@ def sweep_sampled_bound(
 
     Raises InputError for bad eps and settings, and for an undecided limit set.
     """
-    radii = np.array([check_eps(value) for value in eps])
-    if not (radii.size and len(samples)):
-        raise InputError("eps, samples: no values; give at least one of each")
+    radii = np.array(check_radii(eps))
+    if not len(samples):
+        raise InputError("samples: no values; give at least one")
     limit, scene = classify(state).limit, state.scene
     bound, slips = (np.empty((len(samples), radii.size)) for _ in range(2))
     for i, n in enumerate(samples):

@@ -22,6 +22,8 @@ from painleve.theory.sections.listed import theory_of
 
 __all__ = ["space_base"]
 
+LEAST_FRICTION = 1e-140  # the impulse that stops the tip is of the size of 1/mu, and its square must be a double
+
 
 def space_base(limit: LimitSet, bits: int) -> SpaceBase | PolygonBase:
     """See painleve.core.space.offset.SpaceBase and painleve.core.space.polygon_offset.PolygonBase.
@@ -65,6 +67,12 @@ def _map(state: State, d: Derivation) -> tuple[sp.MatrixBase, sp.MatrixBase]:
         raise InputError(
             f"state {state.label}: a coefficient of friction vanishes; the friction section must have an "
             "area: give positive coefficients"
+        )
+    shorter = abs(state.number(E.det())) / max(abs(state.number(e)) for e in E)  # semi-axis, but for a factor
+    if shorter < LEAST_FRICTION:
+        raise InputError(
+            f"state {state.label}: a coefficient of friction of {shorter:.0e} is too small for its square to be a "
+            f'double; give {LEAST_FRICTION:.0e} at least, or no friction (kind = "none")'
         )
     return E, inverse_of_two(E)
 

@@ -19,8 +19,10 @@ from painleve.core.codes import ContactMode
 from painleve.core.space.quartic import bracketed_root
 from painleve.core.space.tangent_plane import (
     ROUNDING,
+    SMALLEST,
     is_definite,
     made_definite,
+    of_little_friction,
     scales,
     sticking_point,
     tangent_energy,
@@ -41,6 +43,8 @@ def disc_impulse(a, p, b_1, b_2, C_11, C_12, C_22, v_n, v_1, v_2):
     scale, back = scales(v_n, v_1, v_2)
     nu = -v_n * scale
     Q_11, Q_12, Q_22, w_1, w_2 = tangent_energy(a, b_1, b_2, C_11, C_12, C_22, nu, v_1 * scale, v_2 * scale)
+    if max(Q_11, Q_22) < SMALLEST:
+        Q_11, Q_12, Q_22, w_1, w_2 = of_little_friction(Q_11, Q_12, Q_22, w_1, w_2)
     if not is_definite(Q_11, Q_12, Q_22):
         Q_11, Q_12, Q_22, w_1, w_2 = made_definite(Q_11, Q_12, Q_22, w_1, w_2, C_11, C_22)
         if Q_11 == 0.0 and w_1 == 0.0 and w_2 == 0.0:  # the section is a point: there is no friction

@@ -19,6 +19,7 @@ import numpy as np
 
 from painleve._jit import jit
 from painleve.core.codes import ContactMode
+from painleve.core.space.quartic import roots_of_quartic
 
 FREE, STICK, SLIP = int(ContactMode.FREE), int(ContactMode.STICK), int(ContactMode.SLIP)
 
@@ -26,8 +27,6 @@ MOST_SOLUTIONS = 6
 """Open, stick and four slips: the rows that `found` needs."""
 COLUMNS = 7
 """Of `found`: the branch, the impulse (r_n, r_1, r_2) and the contact velocity (u_n, u_1, u_2)."""
-
-NEWTON_STEPS = 80
 
 
 @jit
@@ -115,7 +114,7 @@ def _slips(p, beta, A_11, A_12, A_22, nu, v_1, v_2, slips):
     roots = np.empty(4)
     count = 0
     for half, polynomial in enumerate((quartic, turned)):
-        for i in range(_roots_of_quartic(polynomial, roots)):
+        for i in range(roots_of_quartic(polynomial, roots)):
             t = roots[i]
             square = 1.0 + t * t
             d_1, d_2 = (1.0 - t * t) / square, 2.0 * t / square
@@ -138,63 +137,3 @@ def _slips(p, beta, A_11, A_12, A_22, nu, v_1, v_2, slips):
 def _write(impulse, d_1, d_2, speed, row):
     """One slip: lambda, d and u_t = -kappa d, which is parallel to d whatever the rounding of the root."""
     row[0], row[1], row[2], row[3], row[4] = impulse, d_1, d_2, -speed * d_1, -speed * d_2
-
-
-@jit
-def _roots_of_quartic(polynomial, roots):
-    """Simple real roots in [-1, 1) of the quartic with these coefficients (constant first), upwards; their number.
-
-    The roots of each derivative cut the interval into pieces on which the polynomial before it is monotone: every
-    change of sign is found, and between two of them there is one.
-    """
-    knots = np.empty(6)
-    found = 0
-    for degree in range(1, 5):
-        derived = polynomial.copy()
-        for _ in range(4 - degree):
-            for k in range(4):
-                derived[k] = (k + 1) * derived[k + 1]
-            derived[4] = 0.0
-        knots[0] = -1.0
-        for i in range(found):
-            knots[1 + i] = roots[i]
-        knots[1 + found] = 1.0
-        pieces = found + 1
-        found = 0
-        for i in range(pieces):
-            below, above = _value(derived, knots[i]), _value(derived, knots[i + 1])
-            if (below >= 0.0) != (above >= 0.0):
-                roots[found] = _bracketed_root(derived, knots[i], knots[i + 1], above >= 0.0)
-                found += 1
-    return found
-
-
-@jit
-def _value(polynomial, t):
-    c = polynomial
-    return (((c[4] * t + c[3]) * t + c[2]) * t + c[1]) * t + c[0]
-
-
-@jit
-def _slope(polynomial, t):
-    c = polynomial
-    return ((4.0 * c[4] * t + 3.0 * c[3]) * t + 2.0 * c[2]) * t + c[1]
-
-
-@jit
-def _bracketed_root(polynomial, low, high, rising):
-    """Newton's iteration within a bracket that every step narrows; a step that leaves it becomes a bisection."""
-    t = 0.5 * (low + high)
-    for _ in range(NEWTON_STEPS):
-        value = _value(polynomial, t)
-        if (value >= 0.0) == rising:
-            high = t
-        else:
-            low = t
-        slope = _slope(polynomial, t)
-        step = t - value / slope if slope != 0.0 else low
-        following = step if low < step < high else 0.5 * (low + high)
-        if abs(following - t) <= 2.3e-16 * abs(t):
-            break
-        t = following
-    return t

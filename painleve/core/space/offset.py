@@ -21,6 +21,7 @@ from typing import NamedTuple
 from painleve._jit import jit
 from painleve.core.law import FREE, STICK
 from painleve.core.space.conic_law import aligned
+from painleve.core.space.tangent_plane import SMALLEST, UP
 
 NEAR = 0.3  # rad, and relative: how near to the edge of the wedge the second split is used
 NEWTON_STEPS = 3  # from a start that is right to rounding
@@ -99,6 +100,8 @@ def stick_change(a, b_1, b_2, Q_11, Q_12, Q_22, da, db_1, db_2, dC_11, dC_12, dC
     n = v_n + da * base.stick_n + db_1 * base.stick_1 + db_2 * base.stick_2
     t_1 = dv_1 + db_1 * base.stick_n + dC_11 * base.stick_1 + dC_12 * base.stick_2 - b_1 * (n / a)
     t_2 = dv_2 + db_2 * base.stick_n + dC_12 * base.stick_1 + dC_22 * base.stick_2 - b_2 * (n / a)
+    if max(Q_11, Q_22) < SMALLEST:  # Q is of the size of mu^2: its determinant would vanish
+        Q_11, Q_12, Q_22, t_1, t_2 = UP * Q_11, UP * Q_12, UP * Q_22, UP * t_1, UP * t_2
     determinant = Q_11 * Q_22 - Q_12 * Q_12
     e_1, e_2 = (Q_12 * t_2 - Q_22 * t_1) / determinant, (Q_12 * t_1 - Q_11 * t_2) / determinant
     return -(n + b_1 * e_1 + b_2 * e_2) / a, e_1, e_2

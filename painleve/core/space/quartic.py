@@ -1,6 +1,9 @@
-"""The one root of a quartic in an interval of positive numbers, to rounding relative to the root itself."""
+"""Roots of quartics: the one root in an interval of positive numbers, to rounding relative to the root itself, and all
+roots between -1 and 1."""
 
 from math import sqrt
+
+import numpy as np
 
 from painleve._jit import jit
 
@@ -53,3 +56,54 @@ def bracketed_root(c_0, c_1, c_2, c_3, c_4, low, high, guess):
             allowed = high - low
         x = following
     return x
+
+
+@jit
+def roots_of_quartic(polynomial, roots):
+    """Simple real roots in [-1, 1) of the quartic with these coefficients (constant first), upwards; their number.
+
+    The roots of each derivative cut the interval into pieces on which the polynomial before it is monotone: every
+    change of sign is found, and between two of them there is one.
+    """
+    knots = np.empty(6)
+    found = 0
+    for degree in range(1, 5):
+        derived = polynomial.copy()
+        for _ in range(4 - degree):
+            for k in range(4):
+                derived[k] = (k + 1) * derived[k + 1]
+            derived[4] = 0.0
+        knots[0] = -1.0
+        for i in range(found):
+            knots[1 + i] = roots[i]
+        knots[1 + found] = 1.0
+        pieces = found + 1
+        found = 0
+        for i in range(pieces):
+            below, above = _value(derived, knots[i]), _value(derived, knots[i + 1])
+            if (below >= 0.0) != (above >= 0.0):
+                roots[found] = _root_between(derived, knots[i], knots[i + 1], 1.0 if above >= 0.0 else -1.0)
+                found += 1
+    return found
+
+
+@jit
+def _value(c, x):
+    return (((c[4] * x + c[3]) * x + c[2]) * x + c[1]) * x + c[0]
+
+
+@jit
+def _root_between(c, low, high, sense):
+    """The root between -1 <= low and high <= 1, where the polynomial changes sign once, upwards if sense is 1."""
+    if low < 0.0 < high:
+        if c[0] == 0.0:
+            return 0.0
+        low, high = (low, 0.0) if sense * c[0] > 0.0 else (0.0, high)
+    if high <= 0.0:  # mirrored: odd coefficients and the sense change their sign
+        low, high = -high, -low
+        return -bracketed_root(
+            -sense * c[0], sense * c[1], -sense * c[2], sense * c[3], -sense * c[4], low, high, 0.5 * (low + high)
+        )
+    return bracketed_root(
+        sense * c[0], sense * c[1], sense * c[2], sense * c[3], sense * c[4], low, high, 0.5 * (low + high)
+    )

@@ -38,6 +38,22 @@ def tangent_energy(a, b_1, b_2, C_11, C_12, C_22, nu, v_1, v_2):
 
 
 @jit
+def of_little_friction(Q_11, Q_12, Q_22, w_1, w_2):
+    """(Q_11, Q_12, Q_22, w_1, w_2) of the same energy times a factor, where Q, which goes like mu^2, is very small.
+
+    Beside w, which goes like mu, it is smaller still; where it is below any rounding the energy is linear, and a tiny
+    multiple of 1 in its place has the same least point.
+    """
+    largest = max(Q_11, Q_22, abs(w_1), abs(w_2))
+    if largest == 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0
+    Q_11, Q_12, Q_22 = Q_11 / largest, Q_12 / largest, Q_22 / largest
+    if max(Q_11, Q_22) < SMALLEST:
+        Q_11, Q_12, Q_22 = SMALLEST, 0.0, SMALLEST
+    return Q_11, Q_12, Q_22, w_1 / largest, w_2 / largest
+
+
+@jit
 def sticking_point(Q_11, Q_12, Q_22, w_1, w_2):
     """-Q^-1 w in homogeneous coordinates (X, Y, W): the point (X, Y)/W, at infinity where W = 0."""
     return Q_12 * w_2 - Q_22 * w_1, Q_12 * w_1 - Q_11 * w_2, Q_11 * Q_22 - Q_12 * Q_12
