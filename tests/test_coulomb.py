@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import pairwise
 
+import mpmath
 import numpy as np
 import pytest
 import sympy as sp
@@ -86,6 +88,35 @@ def test_generic_contacts_have_one_solution_or_three() -> None:
     """Two solutions appear or vanish together, and far away (a large v_n > 0, no friction) there is one."""
     counts = [len(contact.solve()) for contact in random_numbers(4, 5000)]
     assert set(counts) == {1, 3}
+
+
+@pytest.mark.parametrize("spread", [0.3, 1.0, 2.0])
+def test_slips_are_the_zeros_of_a_function_that_is_convex_and_then_concave_and_stick_is_its_sign_at_zero(spread):
+    """What proves that there are at most three solutions (docs/theory.md, section 2.6): F(k) = 0 at k = kappa/lambda,
+    F'' does not increase on k > 0, and F(0) <= 0 where sticking is in the cone."""
+    for contact in random_numbers(9, 60, spread=spread):
+        a, b, C = contact.G[0, 0], contact.G[0, 1:], contact.G[1:, 1:]
+        nu = -contact.v[0]
+        q, axes = np.linalg.eigh(C - np.outer(b, b) / a)
+        x, along = axes.T @ -(contact.v[1:] + b * nu / a), axes.T @ b
+
+        def F(k, a=a, nu=nu, q=q, x=x, along=along):
+            root = mpmath.sqrt(x[0] ** 2 * (q[1] + k) ** 2 + x[1] ** 2 * (q[0] + k) ** 2)
+            rest = along[0] * x[0] * (q[1] + k) + along[1] * x[1] * (q[0] + k)
+            return a * root - nu * (q[0] + k) * (q[1] + k) + rest
+
+        size = float(q[1] + np.linalg.norm(x) * (a + np.linalg.norm(b)) / abs(nu))
+        grid = [mpmath.mpf(size) * mpmath.mpf(10) ** (mpmath.mpf(i) / 20 - 8) for i in range(260)]
+        with mpmath.workdps(30):
+            values = [F(mpmath.mpf(0)), *map(F, grid)]
+            bends = [mpmath.diff(F, k, 2) for k in grid[::20]]
+        tiny = 1e-12 * (abs(a * np.linalg.norm(x)) + abs(nu) * size)
+        assert all(later <= earlier + tiny for earlier, later in pairwise(bends))
+        branches = contact.solve()[:, 0]
+        changes = sum((low > 0) != (high > 0) for low, high in pairwise(values))
+        assert changes == np.sum(branches == ContactMode.SLIP)
+        assert (values[0] <= 0) == (ContactMode.STICK in branches)
+        assert len(branches) <= 3
 
 
 @pytest.mark.parametrize("gap", [1e-3, 1e-8, 1e-13])
@@ -353,6 +384,36 @@ def test_a_disc_is_the_limit_of_polygons(G: list[list[int]], v: list[Fraction]) 
         errors.append(max(apart.min(axis=0).max(), apart.min(axis=1).max()))
     assert errors[1] < errors[0] / 2.0
     assert errors[1] < 0.1 * np.abs(round_).max()
+
+
+HALF = Fraction(5, 2)
+SQUARE = [(HALF, -HALF), (HALF, HALF), (-HALF, HALF), (-HALF, -HALF)]
+OCTAGON = [(4, 0), (3, 3), (0, 4), (-3, 3), (-4, 0), (-3, -3), (0, -4), (3, -3)]
+
+
+@pytest.mark.parametrize(
+    ("vertices", "G", "v", "slips"),
+    [
+        (SQUARE, [[11, 14, 15], [14, 36, 28], [15, 28, 25]], [-1, Fraction(-11, 2), -2], 4),
+        (OCTAGON, [[17, 10, -5], [10, 17, -16], [-5, -16, 17]], [-1, -3, 5], 6),
+    ],
+    ids=["square", "octagon"],
+)
+def test_on_a_polygon_coulomb_s_law_has_five_and_seven_solutions_where_a_disc_has_three_at_most(vertices, G, v, slips):
+    polygon = Polygon(vertices=tuple((sp.Rational(x), sp.Rational(y)) for x, y in vertices))
+    found = coulomb_solutions(scene_with(G, polygon), AT_REST, v)
+    assert found.enumeration is Enumeration.COMPLETE
+    assert kinds(found) == ["slip"] * slips + ["stick"]
+    corners, matrix = np.array(vertices, dtype=float), np.array(G, dtype=float)
+    for solution in found.solutions:  # by the law itself, in plain numbers
+        r = np.array(solution.impulse)
+        u = np.array(v, dtype=float) + matrix @ r
+        assert r[0] > 0.0
+        assert abs(u[0]) < 1e-12
+        assert r[1:] @ u[1:] == pytest.approx(r[0] * (corners @ u[1:]).min(), abs=1e-11)
+    radius = float(np.linalg.norm(corners, axis=1).max())
+    round_ = coulomb_solutions(scene_with(G, Disc(mu=sp.Rational(radius))), AT_REST, v)
+    assert len(round_.solutions) <= 3
 
 
 def test_polygon_solutions_are_those_of_every_face_of_the_cone_by_hand() -> None:

@@ -78,3 +78,18 @@ def test_text_is_refused_as_a_coefficient():
     """sympify would run it."""
     with pytest.raises(sp.SympifyError):
         Disc(mu="__import__('os').getcwd()")
+
+
+def test_the_reaches_of_a_polygon_of_many_vertices_are_compared_as_numbers_and_not_as_formulas(monkeypatch):
+    """All with all, 496 pairs of formulas of 32 vertices took sympy nine seconds."""
+    corners = tuple((sp.cos(2 * sp.pi * i / 32), sp.sin(2 * sp.pi * i / 32)) for i in range(32))
+    b = sp.Matrix(sp.symbols("b_1 b_2", real=True))
+    compared = []
+    monkeypatch.setattr(sp.Max, "_is_connected", classmethod(lambda cls, x, y: compared.append((x, y))))
+    reach = Polygon(vertices=corners).reach(b)
+    assert not compared
+    assert len(reach.args) == 32
+    monkeypatch.undo()
+    for s in rng.normal(size=(5, 2)):
+        largest = max(-(s[0] * float(x) + s[1] * float(y)) for x, y in corners)
+        assert float(reach.subs(dict(zip(b, s, strict=True)))) == pytest.approx(largest, rel=1e-12)

@@ -6,7 +6,8 @@ impulse r = lambda (1, s), |s| <= 1, with the contact velocity u = (v_n, v_t) + 
 0 and, where lambda > 0, u_t = 0 or s = -u_t/|u_t|. So r = 0 (open), u = 0 (stick), or s = d with |d| = 1 and u_t =
 -kappa d, kappa > 0 (slip). With nu = -v_n not 0 a slip has lambda = nu/(a + b.d), and d is parallel to
     w(d) = v_t (a + b.d) + nu (b + C d),
-a trigonometric equation of degree 2: at most four slips. With nu = 0 it has a + b.d = 0: at most two.
+a trigonometric equation of degree 2: at most four candidates. With nu = 0 it has a + b.d = 0: at most two. Of all these
+no more than three are solutions, families apart: a proposition (docs/theory.md, section 2.6), which polygons break.
 
 The first axis of the frame used here is -b/|b|, so that a + b.d = p + |b| (1 - d_1), p = a - |b|, is formed without
 cancellation where gamma is near zero. Counts are those of nearby data where two slips are about to merge: deciding that
@@ -24,7 +25,7 @@ from painleve.core.space.quartic import roots_of_quartic
 FREE, STICK, SLIP = int(ContactMode.FREE), int(ContactMode.STICK), int(ContactMode.SLIP)
 
 MOST_SOLUTIONS = 6
-"""Open, stick and four slips: the rows that `found` needs."""
+"""Open, stick and four slips: the rows that `found` needs if rounding lets more pass than there are."""
 COLUMNS = 7
 """Of `found`: the branch, the impulse (r_n, r_1, r_2) and the contact velocity (u_n, u_1, u_2)."""
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["Polygon"]
 
 MOST_VERTICES = 16  # that a scene file may give
+FEW = 8  # vertices whose reaches sympy is let compare, all with all, before they are numbers
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,7 +68,8 @@ class Polygon:
 
     def reach(self, b: sp.MatrixBase) -> sp.Expr:
         """The largest -b.s over the section."""
-        return sp.Max(*(-(b[0] * x + b[1] * y) for x, y in self.vertices))
+        reaches = [-(b[0] * x + b[1] * y) for x, y in self.vertices]
+        return sp.Max(*reaches, evaluate=len(reaches) <= FEW)
 
     def direction(self, edge: int, b: sp.MatrixBase) -> sp.ImmutableMatrix:
         return sp.ImmutableMatrix(self.vertices[edge - 1])

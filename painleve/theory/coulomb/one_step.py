@@ -85,7 +85,8 @@ def coulomb_solutions(
     contact and u = v alone. q and v are sequences, or mappings from the coordinates and from `u_<coordinate>`; their
     numbers and the parameters are exact as in a state: text, fractions, sympy numbers, and a float means the decimal
     that it prints. The number of solutions and their multiplicities are decided, by exact arithmetic for rational
-    data and by balls for other, or `enumeration` is UNDECIDED.
+    data and by balls for other, or `enumeration` is UNDECIDED. A disc or an ellipse has at most three of them, families
+    apart (docs/theory.md, section 2.6), a polygon may have more: five and seven occur (section 10.1).
 
     Raises InputError for bad numbers, and where M, the tangents or the section are not sound at q.
     """
