@@ -10,6 +10,7 @@ import sympy as sp
 
 from painleve.core.codes import ContactMode
 from painleve.core.space.coulomb import COLUMNS, MOST_SOLUTIONS, coulomb_disc
+from painleve.core.space.tangent_plane import Delassus
 from painleve.mechanics.friction import Section
 from painleve.mechanics.scene import Coordinate, Scene, make_scene
 
@@ -33,6 +34,11 @@ def scene_with(G: list[list[object]], friction: Section | None) -> Scene:
     )
 
 
+def delassus(G: np.ndarray) -> Delassus:
+    """A matrix as compiled code takes it."""
+    return Delassus(*(float(x) for x in G[np.triu_indices(3)]))
+
+
 @dataclass(frozen=True)
 class Numbers:
     """G = [[a, b], [b, C]] and the contact velocity, for the unit disc."""
@@ -47,7 +53,7 @@ class Numbers:
     def solve(self) -> np.ndarray:
         """(n, COLUMNS) by the compiled solver."""
         G, found = self.G, np.full((MOST_SOLUTIONS, COLUMNS), np.nan)
-        count = coulomb_disc(G[0, 0], self.p, G[0, 1], G[0, 2], G[1, 1], G[1, 2], G[2, 2], *self.v, found)
+        count = coulomb_disc(delassus(G), self.p, tuple(self.v), found)
         return found[:count]
 
     def slips(self) -> np.ndarray:

@@ -60,7 +60,7 @@ def stepped(scene: Scene, run: Callable, run_members: Callable, method: Stepping
     (q, u, p), d, n = cases(scene, method.scheme), scene.dimension, STEPS + 1
     tracks = []
     for i in range(MEMBERS):
-        room = (np.zeros((n, width)) for width in (d, d, 1 + max(1, scene.friction_dimension)))
+        room = (np.zeros((n, width)) for width in (d, d, 1 + max(1, scene.contact.section.dimension)))
         tracks.append(Track(*room, *(np.zeros(n, np.int8) for _ in range(3))))
         tracks[-1].q[0], tracks[-1].u[0] = q[i], u[i]
         run(method, 0, STEP * np.arange(n), np.full(STEPS, STEP), p, tracks[-1])
@@ -75,7 +75,7 @@ def everything(plain: bool) -> dict[str, np.ndarray]:
     found = {}
     for scene in (parabola(), block(frictional=False), space_block("ellipse"), space_block("kite")):
         run, run_members = functions(scene, plain)
-        for scheme in IN_SPACE if scene.friction_dimension > 1 else FixedStep:
+        for scheme in IN_SPACE if scene.contact.section.dimension > 1 else FixedStep:
             columns = stepped(scene, run, run_members, SteppingMethod(int(scheme), 0.5, 1e-3))
             found |= {f"{scene.name} {scheme.name} {name}": column for name, column in columns.items()}
     return found

@@ -11,6 +11,7 @@ import pytest
 import sympy as sp
 from coulomb_contacts import (
     Numbers,
+    delassus,
     random_numbers,
     scene_with,
     slips_by_scanning,
@@ -19,9 +20,10 @@ from coulomb_contacts import (
 
 import painleve
 from painleve.core.codes import ContactMode
-from painleve.core.law import planar_impulse
+from painleve.core.sections.segment import SegmentContact, segment_impulse
 from painleve.core.space.conic_law import disc_impulse
 from painleve.core.space.coulomb import COLUMNS, MOST_SOLUTIONS, coulomb_disc
+from painleve.core.space.tangent_plane import Delassus
 from painleve.errors import InputError
 from painleve.exact.signs import Sign
 from painleve.mechanics.friction import Disc, Ellipse, Polygon, Segment
@@ -43,8 +45,7 @@ def impulses(found: CoulombSolutions) -> np.ndarray:
 
 def project(contact: Numbers) -> np.ndarray:
     """(3,) the impulse of law (7)."""
-    G = contact.G
-    return np.array(disc_impulse(G[0, 0], contact.p, G[0, 1], G[0, 2], G[1, 1], G[1, 2], G[2, 2], *contact.v)[:3])
+    return np.array(disc_impulse(delassus(contact.G), contact.p, tuple(contact.v))[:3])
 
 
 def on_the_circle(angle: float) -> tuple[Fraction, Fraction]:
@@ -123,7 +124,7 @@ def test_slips_are_the_zeros_of_a_function_that_is_convex_and_then_concave_and_s
 def test_a_tiny_normal_compliance_is_not_lost(gap: float) -> None:
     """b along the slip and C diagonal: the planar slip with lambda = 1/(a - |b|), which cancellation would spoil."""
     found = np.empty((MOST_SOLUTIONS, COLUMNS))
-    count = coulomb_disc(1.0 + gap, gap, -1.0, 0.0, 1.0, 0.0, 1.0, -1.0, -1e20, 0.0, found)
+    count = coulomb_disc(Delassus(1.0 + gap, -1.0, 0.0, 1.0, 0.0, 1.0), gap, (-1.0, -1e20, 0.0), found)
     (slip,) = [row for row in found[:count] if row[0] == ContactMode.SLIP]
     assert slip[1] == pytest.approx(1.0 / gap, rel=1e-12)
 
@@ -271,7 +272,8 @@ def test_an_approaching_planar_contact_has_one_solution_and_it_is_the_projection
         found = coulomb_solutions(planar_scene(G, minus, plus), (0, 0), v)
         (a, b), (_, C) = ([float(x) for x in row] for row in G)
         mu_plus, mu_minus = float(plus), float(minus)
-        *r, _ = planar_impulse(a, b, C, a + mu_plus * b, a - mu_minus * b, mu_plus, mu_minus, *map(float, v))
+        contact = SegmentContact(a, b, C, a + mu_plus * b, a - mu_minus * b, mu_plus, mu_minus)
+        *r, _ = segment_impulse(contact, *map(float, v))
         (solution,) = found.solutions
         np.testing.assert_allclose(solution.impulse, r, rtol=1e-12, atol=1e-15)
         seen.add((solution.kind, found.gamma.sign))
@@ -317,7 +319,7 @@ def test_where_the_normal_and_the_tangents_are_uncoupled_coulomb_and_the_project
         G, v = contact.G.copy(), contact.v * [-1.0 if contact.v[0] > 0.0 else 1.0, 1.0, 1.0]
         G[0, 1:] = G[1:, 0] = 0.0
         (solution,) = Numbers(G, v).solve()
-        *r, branch = disc_impulse(G[0, 0], G[0, 0], 0.0, 0.0, G[1, 1], G[1, 2], G[2, 2], *v)
+        *r, branch = disc_impulse(delassus(G), G[0, 0], tuple(v))
         assert solution[0] == branch
         np.testing.assert_allclose(solution[1:4], r, rtol=1e-6, atol=1e-9 * r[0])
     coupled = [n for n in random_numbers(14, 400, spread=0.5) if n.v[0] < 0.0 and len(n.slips()) == 1 == len(n.solve())]

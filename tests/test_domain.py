@@ -82,7 +82,7 @@ def test_M_of_the_minimal_scene_is_definite_up_to_the_radius_at_which_its_coupli
 def test_what_is_proved_holds_at_random_configurations_and_what_is_refuted_fails_at_the_one_named(scene, state, eps):
     state = at(load_scene(scene), state)
     symbols, values = state.scene.q, {p.symbol: state.parameters[p.name] for p in state.scene.parameters}
-    constraint = state.scene.constraint.xreplace(values)
+    constraint = state.scene.contact.constraint.xreplace(values)
     parts = [state.scene.inertia.xreplace(values), sp.Matrix([constraint.diff(s) for s in symbols])]
     law = sp.lambdify(symbols, [constraint, *parts], "numpy")
 

@@ -10,9 +10,9 @@ from dynamics_scenes import Reference, block
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from painleve.core import steps
 from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Change, Ending
+from painleve.core.sections import segment
 from painleve.core.stepping import SteppingMethod
 from painleve.dynamics.proposition1 import check_proposition1
 from painleve.dynamics.schemes import SCHEME_NAMES, load_scheme
@@ -250,10 +250,10 @@ def test_the_contact_problem_agrees_with_all_its_modes_tried_one_by_one() -> Non
             r_n = -(v_n + bias) / (a + b * s)
             if r_n > 0 and (v_t + (b + C * s) * r_n) * s < 0:
                 solutions.append((r_n, s * r_n))
-        for function in (steps.contact_problem, steps.contact_problem.py_func):
-            found = function(rows, 2, True, v_n, v_t, bias)
-            np.testing.assert_allclose(found[:2], min(solutions, key=np.linalg.norm), rtol=1e-9, atol=1e-12)
-        assert steps.solutions(rows, 2, True, v_n, v_t, bias) == len(solutions)
+        for function in (segment.impulse, segment.impulse.py_func):
+            found, _ = function(rows, 2, (v_n, v_t), bias)
+            np.testing.assert_allclose(found, min(solutions, key=np.linalg.norm), rtol=1e-9, atol=1e-12)
+        assert segment.solutions(rows, 2, v_n + bias, v_t) == len(solutions)
         several += len(solutions) > 1
     assert several > 50
 

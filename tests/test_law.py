@@ -16,7 +16,8 @@ from reference_law import DIGITS, Local, Reference, law, to_mp
 from scipy import sparse
 
 from painleve.core.codes import ContactMode
-from painleve.core.law import law_from_rows, planar_impulse
+from painleve.core.rows import row_parts
+from painleve.core.sections import none, segment
 from painleve.kernels.compiled import make_kernels
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
@@ -37,7 +38,7 @@ class Contact:
 
     @property
     def rows(self) -> np.ndarray:
-        """In the order that the law reads (painleve.kernels.rows)."""
+        """In the order that the law reads (painleve.core.rows)."""
         Y_n = np.linalg.solve(self.M, self.w_n)
         a = self.w_n @ Y_n
         if self.H is None:
@@ -64,7 +65,8 @@ class Contact:
 
     def law(self, v: np.ndarray) -> tuple[np.ndarray, ContactMode]:
         result = np.empty_like(v)
-        branch = law_from_rows(self.rows, v.size, self.H is not None, v, result)
+        section = none if self.H is None else segment
+        branch = section.law_from_rows(self.rows, v.size, v, result)
         return result, ContactMode(branch)
 
 
@@ -195,9 +197,9 @@ def test_s_is_positively_homogeneous_exactly_for_powers_of_two(seed, ratio, expo
 
 def condition(contact: Contact) -> float:
     """How much rounding the law may amplify: by M, by the Delassus matrix and by the slipping edge's compliance."""
-    rows, d = contact.rows, contact.w_n.size
-    a, b, C = rows[1 + 2 * d], rows[3 + 4 * d], rows[4 + 4 * d]
-    lifts = [e for e in (rows[2 + 2 * d], rows[5 + 4 * d]) if e > 0.0]
+    rows, at = contact.rows, row_parts(contact.w_n.size, 1, 3)
+    a, (b,), (C,), (edge_minus, _, _) = rows[at.a], rows[at.b], rows[at.C], rows[at.section]
+    lifts = [e for e in (rows[at.edge_plus], edge_minus) if e > 0.0]
     mu = max(contact.minus, contact.plus)
     return float(np.linalg.cond(contact.M) * (a * C / (a * C - b * b)) * (1.0 + (a + mu * abs(b)) / min(lifts)))
 
@@ -271,7 +273,8 @@ def test_with_a_huge_friction_coefficient_s_is_the_least_energy_of_the_definitio
 def test_a_tiny_compliance_of_either_sign_gives_the_least_energy_of_the_definition(edge, v_t):
     """a = 1, C = 1, b = -1/2, and mu such that a + mu b = edge, given beside b so that no rounding hides it."""
     a, b, C, v_n = 1.0, -0.5, 1.0, -1e-3
-    r_n, r_t, branch = planar_impulse(a, b, C, edge, 2.0, 2.0, 2.0, v_n, v_t)
+    contact = segment.SegmentContact(a, b, C, edge, 2.0, 2.0, 2.0)
+    r_n, r_t, branch = segment.segment_impulse(contact, v_n, v_t)
     stick = np.linalg.solve([[a, b], [b, C]], [-v_n, -v_t])
     if stick[1] * edge > -2.0 * v_n:  # beyond the edge that lifts
         assert branch == ContactMode.SLIP_PLUS

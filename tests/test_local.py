@@ -4,7 +4,8 @@ import flint
 import numpy as np
 import pytest
 
-from painleve.asymptotics.local import BITS, make_local_problem
+from painleve.asymptotics.ball_arithmetic import BITS
+from painleve.asymptotics.local import make_local_problem
 from painleve.asymptotics.member import row_balls
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state

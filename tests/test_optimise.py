@@ -112,25 +112,24 @@ def distance_to(limit: LimitSet, points: np.ndarray) -> float:
 def slsqp(limit: LimitSet, eps: float, starts: int = 6) -> float:
     """max dist(S, A)/eps by scipy's SLSQP over (dq, dv) on each branch of the law, where a + s b is above rounding."""
     problem = make_local_problem(limit)
-    d, rows = problem.dimension, np.empty(problem.base.size)
+    d, at, rows = problem.dimension, problem.parts, np.empty(problem.base.size)
 
     def law(z: np.ndarray, branch: ContactMode) -> tuple[np.ndarray, list[float]]:
         """S on that branch, and what must be >= 0 for it to be S; all divided by eps."""
         v = problem.u + eps * z[d:]
         problem.kernels.rows_at(problem.q + eps * z[:d], problem.p, rows)
-        w, Y_n, rest = rows[1 : 1 + d], rows[1 + d : 1 + 2 * d], 3 + 2 * d
-        H, Y_t = rows[rest : rest + d], rows[rest + d : rest + 2 * d]
-        b, C, minus, mu_plus, mu_minus = rows[rest + 2 * d :]
-        G, Y = np.array([[rows[1 + 2 * d], b], [b, C]]), np.stack([Y_n, Y_t])
+        w, H = rows[at.w_n], rows[at.H[0]]
+        (b,), (C,), (minus, mu_plus, mu_minus) = rows[at.b], rows[at.C], rows[at.section]
+        G, Y = np.array([[rows[at.a], b], [b, C]]), np.stack([rows[at.Y_n], rows[at.Y_t[0]]])
         v_n, stick = w @ v, -np.linalg.solve(G, [w @ v, H @ v])
-        room = [rows[0] / eps, -v_n / eps, 1.0 - z[:d] @ z[:d], 1.0 - z[d:] @ z[d:]]
-        edges, mu = {1: rows[2 + 2 * d], -1: minus}, {1: mu_plus, -1: mu_minus}
+        room = [rows[at.g] / eps, -v_n / eps, 1.0 - z[:d] @ z[:d], 1.0 - z[d:] @ z[d:]]
+        edges, mu = {1: rows[at.edge_plus], -1: minus}, {1: mu_plus, -1: mu_minus}
         over = {s: s * stick[1] * edges[s] + mu[s] * v_n for s in (1, -1)}
         if branch is ContactMode.STICK:
             return v + stick @ Y, [*room, *(-over[s] / eps if edges[s] > 0.0 else 0.0 for s in (1, -1))]
         s = 1 if branch is ContactMode.SLIP_PLUS else -1
         lam = -v_n / edges[s] if edges[s] > 1e-300 else 0.0
-        return v + lam * (Y_n + s * mu[s] * Y_t), [*room, over[s] / eps, (edges[s] - 1e-12) / eps]
+        return v + lam * (Y[0] + s * mu[s] * Y[1]), [*room, over[s] / eps, (edges[s] - 1e-12) / eps]
 
     rng, best = np.random.default_rng(1), 1.0
     for branch in (ContactMode.STICK, ContactMode.SLIP_PLUS, ContactMode.SLIP_MINUS):

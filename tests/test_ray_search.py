@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 import pytest
+from painleve.core.branch_excess import REACH
 
 from painleve.asymptotics import ray_search
 from painleve.asymptotics.local import make_local_problem
@@ -12,7 +13,6 @@ from painleve.asymptotics.methods import distance
 from painleve.asymptotics.ray_search import RaySearch
 from painleve.asymptotics.sample import KINDS
 from painleve.asymptotics.search import PlaneSearch
-from painleve.core.branch_excess import REACH
 from painleve.core.codes import ContactMode
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state

@@ -9,7 +9,9 @@ import pytest
 import sympy as sp
 from dynamics_scenes import space_block
 
-from painleve.core.rows import RowLayout, polygon_rows, row_layout, row_parts, segment_rows
+from painleve.core.rows import RowLayout, row_layout, row_parts
+from painleve.core.sections.polygon import polygon_rows
+from painleve.core.sections.segment import segment_rows
 from painleve.kernels.rows import Rows, rows_of
 from painleve.mechanics.derive import derive
 from painleve.mechanics.library import SCENE_NAMES, load_scene

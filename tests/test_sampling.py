@@ -22,10 +22,9 @@ from painleve.asymptotics.local import LocalProblem, make_local_problem
 from painleve.asymptotics.member import make_member, row_balls
 from painleve.asymptotics.sample import BINS, KINDS, SAMPLERS, SampleOptions, _Stream, sample_distance, sample_members
 from painleve.core.codes import ContactMode
-from painleve.core.law import planar_impulse
-from painleve.core.offset import planar_split
 from painleve.core.reduce import distance_squared
 from painleve.core.sampling import BLOCK
+from painleve.core.sections.segment import SegmentBase, SegmentChange, SegmentContact, segment_impulse, split
 from painleve.core.taylor import monomial_block, polynomial_block, sparse_polynomials
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
@@ -41,6 +40,7 @@ KINDS_OF_STATE = [
 ]
 SAMPLES = 20_000
 SIGNIFICANCE = 1e-3
+UNCHANGED = SegmentChange(0.0, 0.0, 0.0, 0.0, 0.0)
 BIN_EDGE = 1e-9  # of a bin's width: how near to its edge another rounding may move a sample to the next bin
 
 
@@ -258,10 +258,9 @@ def test_the_law_by_selection_is_the_law_by_cases():
         plus, minus = chance.exponential(2.0, size=2)
         v_n, v_t = -chance.exponential(), chance.normal()
         edges = a + plus * b, a - minus * b
-        *expected, branch = planar_impulse(a, b, C, *edges, plus, minus, v_n, v_t)
-        code, tau, *found = planar_split(
-            True, a, b, C, *edges, plus, minus, 0.0, 0.0, 0.0, 0.0, 0.0, v_n, v_t, 0.0, 0.0, 0.0, 0
-        )
+        contact = SegmentContact(a, b, C, *edges, plus, minus)
+        *expected, branch = segment_impulse(contact, v_n, v_t)
+        code, tau, *found = split(True, contact, UNCHANGED, v_n, v_t, SegmentBase(0.0, 0.0), 0.0, 0)
         assert (code, tau) == (branch, 0.0)
         assert found == pytest.approx(expected, rel=1e-12, abs=1e-12 * float(np.abs(expected).max()))
         seen.add((code, min(edges) > 0.0))
@@ -273,11 +272,10 @@ def test_the_law_by_selection_is_the_law_by_cases():
 @pytest.mark.parametrize("edge", [0.0, -1.0, 5e-324])
 def test_what_is_not_selected_may_be_infinite_and_does_no_harm(edge: float):
     """An edge that cannot lift, or is as good as that, makes its quotient infinite; the tip sticks all the same."""
-    code, tau, e_n, e_t = planar_split(
-        True, 1.0, 0.0, 1.0, edge, edge, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -2.0, 0.5, 0.0, 0.0, 0.0, 0
-    )
+    contact, still = SegmentContact(1.0, 0.0, 1.0, edge, edge, 1.0, 1.0), SegmentBase(0.0, 0.0)
+    code, tau, e_n, e_t = split(True, contact, UNCHANGED, -2.0, 0.5, still, 0.0, 0)
     assert (code, tau, e_n, e_t) == (ContactMode.STICK, 0.0, 2.0, -0.5)
-    free = planar_split(False, 1.0, 0.0, 1.0, edge, edge, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.5, 0.0, 0.0, 0.0, 0)
+    free = split(False, contact, UNCHANGED, 2.0, 0.5, still, 0.0, 0)
     assert free == (ContactMode.FREE, 0.0, 0.0, 0.0)
 
 

@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 from reference_spatial_law import exact_disc_impulse
 
 from painleve.core.codes import ContactMode
-from painleve.core.law import planar_impulse
+from painleve.core.sections.segment import SegmentContact, segment_impulse
 from painleve.core.space.conic_law import disc_impulse
 from painleve.core.space.polygon_law import polygon_impulse
+from painleve.core.space.tangent_plane import Delassus
 
 EPS = float(np.finfo(float).eps)
 # p/a = 1 - eccentricity: circle, ellipses, parabola, hyperbolas, huge friction
@@ -43,22 +44,25 @@ class Contact:
     def Q(self) -> np.ndarray:
         return self.C - np.outer(self.b, self.b) / self.a
 
+    @property
+    def G(self) -> Delassus:
+        return Delassus(self.a, *self.b, self.C[0, 0], self.C[0, 1], self.C[1, 1])
+
     def impulse(self, v: np.ndarray) -> tuple[np.ndarray, ContactMode]:
-        *r, branch = disc_impulse(self.a, self.p, *self.b, self.C[0, 0], self.C[0, 1], self.C[1, 1], *v)
+        *r, branch = disc_impulse(self.G, self.p, tuple(v))
         return np.array(r), ContactMode(branch)
 
     def polygon(self, vertices: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, ContactMode]:
         p = self.a + vertices @ self.b
-        *r, branch = polygon_impulse(self.a, *self.b, self.C[0, 0], self.C[0, 1], self.C[1, 1], vertices, p, *v)
+        *r, branch = polygon_impulse(self.G, vertices, p, tuple(v))
         return np.array(r), ContactMode(branch)
 
     def narrower_disc(self, radius: float, v: np.ndarray) -> np.ndarray:
         """The impulse of the disc of this radius."""
         (b_1, b_2), C = radius * self.b, radius * radius * self.C
         p = self.a - hypot(b_1, b_2)
-        r_n, r_1, r_2, _ = disc_impulse(
-            self.a, p, b_1, b_2, C[0, 0], C[0, 1], C[1, 1], v[0], radius * v[1], radius * v[2]
-        )
+        G = Delassus(self.a, b_1, b_2, C[0, 0], C[0, 1], C[1, 1])
+        r_n, r_1, r_2, _ = disc_impulse(G, p, (v[0], radius * v[1], radius * v[2]))
         return np.array([r_n, radius * r_1, radius * r_2])
 
     def energy(self, r: np.ndarray, v: np.ndarray) -> float:
@@ -188,9 +192,10 @@ def test_no_point_of_a_fine_grid_on_the_edge_of_the_cone_has_less_energy(shape):
 
 def test_without_friction_the_impulse_is_normal_and_no_number_is_undefined():
     for v in ([-2.0, 0.0, 0.0], [-2e-300, 0.0, 0.0]):
-        assert disc_impulse(4.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0, *v) == (-v[0] / 4.0, 0.0, 0.0, ContactMode.SLIP)
-        point = np.zeros((1, 2))
-        assert polygon_impulse(4.0, 0.5, 0.1, 1.0, 0.2, 1.0, point, np.array([4.0]), v[0], 1.0, 2.0) == (
+        none = Delassus(4.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        assert disc_impulse(none, 4.0, tuple(v)) == (-v[0] / 4.0, 0.0, 0.0, ContactMode.SLIP)
+        G, point = Delassus(4.0, 0.5, 0.1, 1.0, 0.2, 1.0), np.zeros((1, 2))
+        assert polygon_impulse(G, point, np.array([4.0]), (v[0], 1.0, 2.0)) == (
             -v[0] / 4.0,
             0.0,
             0.0,
@@ -273,9 +278,10 @@ def test_a_planar_problem_in_space_has_the_planar_answer(shape):
             rng.normal(),
         )
         edges = (a + abs(b), p) if sense > 0.0 else (p, a + abs(b))
-        planar = planar_impulse(a, b, C_11, *edges, 1.0, 1.0, v_n, v_t)
+        planar = segment_impulse(SegmentContact(a, b, C_11, *edges, 1.0, 1.0), v_n, v_t)
         segment = np.array([[-1.0, 0.0], [1.0, 0.0]])
-        spatial = polygon_impulse(a, b, 0.0, C_11, 0.0, C_22, segment, np.array(edges[::-1]), v_n, v_t, 0.0)
+        G = Delassus(a, b, 0.0, C_11, 0.0, C_22)
+        spatial = polygon_impulse(G, segment, np.array(edges[::-1]), (v_n, v_t, 0.0))
         np.testing.assert_allclose([*spatial[:2], spatial[2]], [*planar[:2], 0.0], rtol=1e-13, atol=1e-13)
         assert (spatial[3] == ContactMode.STICK) == (planar[2] == ContactMode.STICK)
 
@@ -305,8 +311,8 @@ def test_a_disc_whose_b_slip_and_principal_axis_are_parallel_has_the_planar_answ
         v_n, v_t = -rng.exponential() * 10.0 ** rng.uniform(-6, 0), rng.normal()
         p = shape * a
         plus, minus = (p, a + abs(b)) if b < 0.0 else (a + abs(b), p)
-        r_n, r_t, planar = planar_impulse(a, b, C, plus, minus, 1.0, 1.0, v_n, v_t)
-        n, r_1, r_2, branch = disc_impulse(a, p, b, 0.0, C, 0.0, across, v_n, v_t, 0.0)
+        r_n, r_t, planar = segment_impulse(SegmentContact(a, b, C, plus, minus, 1.0, 1.0), v_n, v_t)
+        n, r_1, r_2, branch = disc_impulse(Delassus(a, b, 0.0, C, 0.0, across), p, (v_n, v_t, 0.0))
         assert (branch == ContactMode.STICK) == (planar == ContactMode.STICK)
         assert r_2 == pytest.approx(0.0, abs=1e-14 * n)
         assert (n, r_1) == pytest.approx((r_n, r_t), rel=1e-12, abs=1e-13 * r_n)

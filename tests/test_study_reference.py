@@ -13,7 +13,7 @@ import pytest
 import sympy as sp
 import xarray as xr
 
-from painleve.core.steps import solutions
+from painleve.core.sections.segment import solutions
 from painleve.dynamics.genot_brogliato import find_friction, singular_point
 from painleve.dynamics.modes import ContactPoint, Mode
 from painleve.dynamics.simulate import simulate
@@ -207,9 +207,10 @@ def test_solutions_of_a_step_are_as_many_as_the_compiled_schemes_count() -> None
         start = make_start(
             load_scene("slender_rod"), q={"x": 0, "y": math.sin(theta), "theta": theta}, parameters={"mu": mu}
         )
-        a, b, C = start.rows[7], start.rows[15], start.rows[16]
+        at = start.motion.rows.parts
+        a, (b,), (C,) = start.rows[at.a], start.rows[at.b], start.rows[at.C]
         v = rng.normal(size=(50, 2))
-        counted = [solutions(start.rows, 3, True, v_n, v_t, 0.0) for v_n, v_t in v]
+        counted = [solutions(start.rows, 3, v_n, v_t) for v_n, v_t in v]
         assert step_solutions(np.array([[a, b], [b, C]]), mu, v).tolist() == counted
         several += sum(n > 1 for n in counted)
     assert several > 20

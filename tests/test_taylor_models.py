@@ -18,9 +18,10 @@ from flint import arb
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from painleve.asymptotics.ball_arithmetic import BITS
 from painleve.asymptotics.certify.cover import Cover
 from painleve.asymptotics.certify.taylor_models import TaylorModel, expand, make_models, taylor_order
-from painleve.asymptotics.local import BITS, LocalProblem, make_local_problem
+from painleve.asymptotics.local import LocalProblem, make_local_problem
 from painleve.asymptotics.member import base_balls
 from painleve.errors import InputError
 from painleve.exact.balls import ball

@@ -9,11 +9,13 @@ from pathlib import Path
 from types import ModuleType
 
 import numpy as np
+import plain_law
 import plain_motion
 import pytest
 
 from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Change, FixedStep, MemberOutcome
+from painleve.kernels.compiled import make_kernels
 from painleve.kernels.motion import sample
 from painleve.kernels.motion.compiled import make_motion
 from painleve.kernels.templates import write_out
@@ -49,6 +51,21 @@ def test_every_scheme_steps_in_plain_python_as_it_does_compiled_bit_for_bit(tmp_
         seen = np.concatenate([values for name, values in compiled.items() if name.endswith(f" {column}")])
         assert set(seen.tolist()) == set(codes)
     assert {name.split()[1] for name in compiled if name.startswith("parabola")} == {s.name for s in FixedStep}
+
+
+def test_samples_are_drawn_in_plain_python_as_compiled_bit_for_bit(tmp_path: Path) -> None:
+    program, file = Path(plain_law.__file__), tmp_path / "plain.npz"
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(sys.path)}
+    subprocess.run([sys.executable, program, file], env=environment, check=True)
+    kernels = make_kernels(plain_motion.parabola())
+    compiled = plain_law.everything(kernels.rows_at, kernels.sample_lane)
+    with np.load(file) as plain:
+        assert set(plain) == set(compiled)
+        for name, column in compiled.items():
+            assert column.tobytes() == plain[name].tobytes(), name
+    counts = {name: column for name, column in compiled.items() if name.endswith(" counts")}
+    codes = (ContactMode.FREE, ContactMode.STICK, ContactMode.SLIP_PLUS)
+    assert all(column[code] > 0 for column in counts.values() for code in codes)
 
 
 def module(path: Path, text: str) -> ModuleType:

@@ -1,15 +1,14 @@
-"""Free members, which are known in closed form, and the exact test of whether an offset is in its ball."""
+"""Free members, which are known in closed form."""
 
 from __future__ import annotations
 
-import flint
 import numpy as np
 
-from painleve.asymptotics.local import BITS, LocalProblem
+from painleve.asymptotics.local import LocalProblem
 from painleve.asymptotics.member import Member, make_member
 from painleve.core.codes import ContactMode
 
-__all__ = ["free_member", "is_inside"]
+__all__ = ["free_member"]
 
 
 def free_member(problem: LocalProblem, eps: float, *, away: bool) -> Member:
@@ -23,9 +22,3 @@ def free_member(problem: LocalProblem, eps: float, *, away: bool) -> Member:
         if member.branch is ContactMode.FREE:
             return member
     raise ArithmeticError("no configuration with g < 0 was found, yet grad g is not zero")
-
-
-def is_inside(x: list[flint.arb], eps: float) -> bool:
-    """Whether an exact offset is in the closed ball for certain."""
-    with flint.ctx.workprec(BITS):
-        return bool(sum((y * y for y in x), flint.arb(0)) <= flint.arb(float(eps)) ** 2)

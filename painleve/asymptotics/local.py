@@ -16,10 +16,11 @@ import flint
 import numpy as np
 import sympy as sp
 
-from painleve.asymptotics.space.base import space_base
+from painleve.asymptotics.ball_arithmetic import BITS
+from painleve.asymptotics.sections.listed import asymptotics_of
+from painleve.asymptotics.sections.section import SectionAsymptotics
+from painleve.core.lane import BaseImpulse, BaseState
 from painleve.core.rows import RowParts
-from painleve.core.space.offset import SpaceBase
-from painleve.core.space.polygon_offset import PolygonBase
 from painleve.core.taylor import Polynomials, monomial_block, polynomial_block, sparse_polynomials
 from painleve.errors import InputError
 from painleve.exact.balls import ball
@@ -28,7 +29,6 @@ from painleve.kernels.compiled import Kernels, make_kernels
 from painleve.kernels.rows import Rows
 from painleve.progress import told
 from painleve.theory.limit_set import LimitSet
-from painleve.theory.sections.listed import theory_of
 
 __all__ = ["Arithmetic", "Expansion", "LocalProblem", "make_local_problem"]
 
@@ -38,7 +38,6 @@ MOST_MONOMIALS = 70
 HIGHEST_ORDER = 16
 ACCURACY = 1e-14  # aimed at by the order of a row, relative to its size on the ball
 TRUSTED = 1e-10  # proved of every row, else it is evaluated plainly: wide enclosures overestimate
-BITS = 320
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -59,12 +58,12 @@ class LocalProblem:
     """The state and its limit set as the kernels want them; arrays are float64, rounded from exact values.
 
     base: the rows at q; u: u-; direction: unit vector from u- to u_tilde (0 without a jump), length: its distance;
-    impulse: the sticking impulse at the base, in space all of painleve.core.space.offset.SpaceBase or of
-    painleve.core.space.polygon_offset.PolygonBase; multiplier, critical_edge: see painleve.core.offset.planar_split;
+    impulse, multiplier, critical_edge: see painleve.core.lane.BaseState;
     carried: norm of dg with respect to the carried coordinates, and its direction in q.
     """
 
     limit: LimitSet
+    section: SectionAsymptotics
     kernels: Kernels
     q: np.ndarray
     p: np.ndarray
@@ -72,7 +71,7 @@ class LocalProblem:
     base: np.ndarray
     direction: np.ndarray
     length: float
-    impulse: np.ndarray | SpaceBase | PolygonBase
+    impulse: BaseImpulse
     multiplier: float
     critical_edge: int
     carried: float
@@ -87,6 +86,11 @@ class LocalProblem:
     @property
     def shape(self) -> tuple[int, ...]:
         return self.kernels.derivation.shape
+
+    @cached_property
+    def base_state(self) -> BaseState:
+        """The same as compiled code takes it."""
+        return BaseState(**{name: getattr(self, name) for name in BaseState._fields})
 
     @property
     def parts(self) -> RowParts:
@@ -218,7 +222,7 @@ def _enclosed_coefficients(problem: LocalProblem, eps: float, degree: int) -> np
 def make_local_problem(limit: LimitSet) -> LocalProblem:
     """Round an exact state and its limit set to arrays, and expand the rows of its scene about it."""
     state = limit.state
-    kernels = make_kernels(state.scene)
+    kernels, section = make_kernels(state.scene), asymptotics_of(state.scene.contact)
     derivation, rows = kernels.derivation, kernels.rows
     point = {symbol: ball(value, bits=BITS) for symbol, value in state.substitution.items()}
     variables = [state.scene.q[i] for i in derivation.shape]
@@ -229,7 +233,7 @@ def make_local_problem(limit: LimitSet) -> LocalProblem:
     table = [[float(expanded[r].terms.get(m, flint.arb(0)).mid()) for m in powers] for r in rows.varying]
     base = np.array([_base_value(rows, r, jet, configuration) for r, jet in enumerate(expanded)])
     if limit.critical:
-        base[rows.edge(limit.edge)] = 0.0
+        base[rows.edges[limit.edge]] = 0.0
     base[rows.parts.g] = 0.0
     jump = limit.jump
     length = float(np.linalg.norm(jump))
@@ -239,6 +243,7 @@ def make_local_problem(limit: LimitSet) -> LocalProblem:
     norm = float(np.linalg.norm(carried))
     return LocalProblem(
         limit=limit,
+        section=section,
         kernels=kernels,
         q=_floats(limit, state.q),
         p=_floats(limit, [state.parameters[s.name] for s in state.scene.parameters]),
@@ -246,7 +251,7 @@ def make_local_problem(limit: LimitSet) -> LocalProblem:
         base=base,
         direction=jump / length if length > 0.0 else jump,
         length=length,
-        impulse=_base_impulse(limit),
+        impulse=section.base_impulse(limit),
         multiplier=state.number(limit.multiplier),
         critical_edge=limit.edge if limit.critical else 0,
         carried=norm,
@@ -275,13 +280,3 @@ def _order(variables: int) -> int:
 
 def _floats(limit: LimitSet, values: Sequence[sp.Expr]) -> np.ndarray:
     return np.array([limit.state.number(value) for value in values])
-
-
-def _base_impulse(limit: LimitSet) -> np.ndarray | SpaceBase | PolygonBase:
-    """-G^-1 v_c at the base state, whether or not it is in the cone (0 without friction)."""
-    state = limit.state
-    if state.scene.contact.section.dimension == 2:
-        return space_base(limit, BITS)
-    if not state.scene.contact.section.dimension:
-        return np.zeros(2)
-    return np.array([state.number(x) for x in theory_of(state.scene.contact).sticking_impulse(state)])

@@ -13,15 +13,13 @@ from functools import lru_cache
 import flint
 import numpy as np
 
-from painleve.asymptotics.local import BITS, LocalProblem
-from painleve.asymptotics.space.member import ContactBalls, conic_impulse, polygon_impulse
+from painleve.asymptotics.ball_arithmetic import BITS, Balls, certain, dot, norm
+from painleve.asymptotics.local import LocalProblem
 from painleve.core.codes import ContactMode
 from painleve.exact.balls import ball, make_ball_function
 from painleve.sets import Bounds
 
 __all__ = ["Member", "base_balls", "distance_to_point", "jump_balls", "make_member", "row_balls"]
-
-Balls = list[flint.arb]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -88,7 +86,7 @@ def distance_to_point(problem: LocalProblem, member: Member, fraction: float) ->
     with flint.ctx.workprec(BITS):
         jump = jump_balls(problem)
         share = flint.arb(float(fraction))
-        return _outward(_norm([x - share * y for x, y in zip(member.enclosure, jump, strict=True)]))
+        return _outward(norm([x - share * y for x, y in zip(member.enclosure, jump, strict=True)]))
 
 
 def _outward(value: flint.arb) -> tuple[float, float]:
@@ -125,83 +123,21 @@ def _law(problem: LocalProblem, dq: Balls, dv: Balls) -> tuple[Balls, ContactMod
     rows = row_balls(problem, dq)
     at_base = all(x == 0 for x in dq)  # there g = 0, <u-, n> = 0 and gamma = 0 hold exactly, which no ball can show
     v = [x + y for x, y in zip(u, dv, strict=True)]
-    w_n, Y_n, a = rows[parts.w_n], rows[parts.Y_n], rows[parts.a]
-    v_n = _dot(w_n, dv if at_base else v)
-    contact = at_base or not _certain(rows[parts.g] < 0, rows[parts.g] >= 0, "contact")
-    if not contact or _certain(v_n >= 0, v_n < 0, "the sign of v_n"):
+    v_n = dot(rows[parts.w_n], dv if at_base else v)
+    contact = at_base or not certain(rows[parts.g] < 0, rows[parts.g] >= 0, "contact")
+    if not contact or certain(v_n >= 0, v_n < 0, "the sign of v_n"):
         return dv, ContactMode.FREE
-    if not problem.limit.state.scene.contact.section.dimension:
-        return [x - y * v_n / a for x, y in zip(dv, Y_n, strict=True)], ContactMode.FRICTIONLESS
-    if problem.limit.state.scene.contact.section.dimension == 2:
-        return _law_in_space(problem, rows, v, v_n, dv, at_base)
-    H, Y_t = rows[parts.H[0]], rows[parts.Y_t[0]]
-    (b,), (C,), (minus, mu_plus, mu_minus) = rows[parts.b], rows[parts.C], rows[parts.section]
-    plus, v_t = rows[parts.edge_plus], _dot(H, v)
-    determinant = a * C - b * b
-    r_n, r_t, branch = (b * v_t - C * v_n) / determinant, (b * v_n - a * v_t) / determinant, ContactMode.STICK
-    critical = problem.critical_edge if at_base else 0
-    for sense, edge, s, slip in (
-        (1, plus, mu_plus, ContactMode.SLIP_PLUS),
-        (-1, minus, -mu_minus, ContactMode.SLIP_MINUS),
-    ):
-        if (
-            branch is not ContactMode.STICK
-            or sense == critical
-            or not _certain(edge > 0, edge <= 0, "the sign of gamma")
-        ):
-            continue
-        excess = sense * (r_t * edge + s * v_n)
-        if _certain(excess > 0, excess <= 0, "stick or slip"):
-            r_n, r_t, branch = -v_n / edge, -s * v_n / edge, slip
-    moved = zip(dv, Y_n, Y_t, strict=True)
-    return [x + y * r_n + z * r_t for x, y, z in moved], branch
-
-
-def _law_in_space(
-    problem: LocalProblem, rows: Balls, v: Balls, v_n: flint.arb, dv: Balls, at_base: bool
-) -> tuple[Balls, ContactMode]:
-    parts = problem.parts
-    (H_1, H_2), (Y_1, Y_2) = ([rows[part] for part in columns] for columns in (parts.H, parts.Y_t))
-    v_t = _dot(H_1, v), _dot(H_2, v)
-    contact = ContactBalls(a=rows[parts.a], b=rows[parts.b], C=rows[parts.C], v=(v_n, *v_t))
-    critical, n = problem.critical_edge if at_base else 0, len(rows[parts.section]) // 3
-    if n:
-        p, s = rows[parts.section][:n], rows[parts.section][n:]
-        known = [flint.arb(0) if i + 1 == critical else p[i] for i in range(n)]
-        r_n, r_1, r_2, branch = polygon_impulse(contact, [s[2 * i : 2 * i + 2] for i in range(n)], known)
-    else:
-        r_n, r_1, r_2, branch = conic_impulse(contact, flint.arb(0) if critical else rows[parts.edge_plus])
-    moved = zip(dv, rows[parts.Y_n], Y_1, Y_2, strict=True)
-    return [x + y * r_n + z_1 * r_1 + z_2 * r_2 for x, y, z_1, z_2 in moved], branch
-
-
-def _certain(yes: bool, no: bool, what: str) -> bool:
-    if not yes and not no:
-        raise ArithmeticError(f"{what} cannot be decided with {BITS} bits at these offsets")
-    return yes
+    velocity = [v_n, *(dot(rows[part], v) for part in parts.H)]
+    return problem.section.offset(rows, parts, dv, velocity, problem.critical_edge if at_base else 0)
 
 
 def _distance_to_limit(problem: LocalProblem, offset: Balls) -> flint.arb:
     zero, jump = [flint.arb(0)] * len(offset), jump_balls(problem)
-    to_start, to_end = _norm(offset), _norm([x - y for x, y in zip(offset, jump, strict=True)])
+    to_start, to_end = norm(offset), norm([x - y for x, y in zip(offset, jump, strict=True)])
     if problem.limit.kind == "point":
         return to_start
     if problem.limit.kind == "pair":
         return to_start.min(to_end)
-    share = _dot(offset, jump) / _dot(jump, jump)
+    share = dot(offset, jump) / dot(jump, jump)
     share = share.max(zero[0]).min(flint.arb(1))
-    return _norm([x - share * y for x, y in zip(offset, jump, strict=True)])
-
-
-def _dot(x: Balls, y: Balls) -> flint.arb:
-    total = flint.arb(0)
-    for left, right in zip(x, y, strict=True):
-        total += left * right
-    return total
-
-
-def _norm(x: Balls) -> flint.arb:
-    """The root is taken end by end: of a ball that touches zero it would be undefined."""
-    squared = _dot(x, x)
-    lower, upper = squared.lower(), squared.upper()
-    return (lower.sqrt() if lower > 0 else flint.arb(0)).union(upper.sqrt())
+    return norm([x - share * y for x, y in zip(offset, jump, strict=True)])

@@ -2,7 +2,7 @@
 
 Free members (g < 0, or v_n >= 0) are farthest at exactly eps: dist(v_eps, A) <= |v_eps - u-|, and a direction that
 points away from A attains it. Over one configuration in contact the law is piecewise linear in v, and the farthest
-member of each branch is found globally (painleve.core.branch_excess). What is left is a search over the shape offsets
+member of each branch is found globally (painleve.core.excess). What is left is a search over the shape offsets
 and, where the tip slips, over its impulse: a grid on every chart, then a stencil that shrinks about the best places.
 The search finds the supremum over the closure, and that is an estimate; the bound is the distance of one true member.
 Where the law depends on three coordinates or more it goes along rays (painleve.asymptotics.ray_search).
@@ -17,17 +17,19 @@ from itertools import product
 import flint
 import numpy as np
 
+from painleve.asymptotics.ball_arithmetic import BITS, is_inside
 from painleve.asymptotics.distance import Attained, Distance
-from painleve.asymptotics.free_member import free_member, is_inside
-from painleve.asymptotics.local import BITS, Arithmetic, Expansion, LocalProblem, make_local_problem
+from painleve.asymptotics.free_member import free_member
+from painleve.asymptotics.local import Arithmetic, Expansion, LocalProblem, make_local_problem
 from painleve.asymptotics.member import Member, base_balls, make_member, row_balls
 from painleve.asymptotics.ray_search import RaySearch
 from painleve.asymptotics.sample import KINDS, check_eps
 from painleve.asymptotics.search import SLIPS, FarthestMember, PlaneSearch
+from painleve.asymptotics.sections.listed import asymptotics_of
 from painleve.asymptotics.space.optimise import optimise_in_space
 from painleve.asymptotics.witness import find_family
-from painleve.core.branch_excess import REACH
 from painleve.core.codes import ContactMode
+from painleve.core.excess import REACH
 from painleve.errors import InputError
 from painleve.progress import told
 from painleve.sets import Bounds, excess_of_segment_from_profile
@@ -67,7 +69,7 @@ def optimise_distance(limit: LimitSet, eps: float, options: OptimiseOptions | No
     if limit.kind == "undecided":
         raise InputError(f"state {limit.state.label}: no distance to a limit set that is undecided: {limit.reason}")
     check_domain(limit.state, eps)
-    if limit.state.scene.contact.section.dimension == 2:
+    if asymptotics_of(limit.state.scene.contact).branch_excesses is None:
         return optimise_in_space(limit, eps, starts=options.starts, arithmetic=options.arithmetic)
     problem = make_local_problem(limit)
     expansion = problem.expansion(eps, options.arithmetic)
@@ -194,6 +196,6 @@ def _velocity(
         w = rows[p.parts.w_n]
         v_n = sum((x * (y + z) for x, y, z in zip(w, u, dv, strict=True)), flint.arb(0))
         lam = flint.arb(found.impulse) * (1 - flint.arb(tilt)) + flint.arb(nudge * search.eps)
-        lack = -lam * rows[p.kernels.rows.index(SLIPS[found.branch])] - v_n
+        lack = -lam * rows[p.kernels.rows.edges[SLIPS[found.branch]]] - v_n
         squared = sum((x * x for x in w), flint.arb(0))
         return [flint.arb((x + lack * y / squared).mid()) for x, y in zip(dv, w, strict=True)]

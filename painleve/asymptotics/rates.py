@@ -37,6 +37,7 @@ from painleve.asymptotics.charts import PlaneChart
 from painleve.asymptotics.local import LocalProblem, make_local_problem
 from painleve.asymptotics.sample import KINDS
 from painleve.asymptotics.search import SLIPS, FarthestMember, PlaneSearch
+from painleve.asymptotics.sections.listed import asymptotics_of
 from painleve.asymptotics.space.rates import root_rate
 from painleve.core.codes import ContactMode
 from painleve.errors import InputError
@@ -107,7 +108,7 @@ def rate(limit: LimitSet) -> Rate:
     if near is not None and near.kind is Neighbourhood.UNDECIDED:
         raise InputError(f"{where}: no rate while it is undecided which part of A is approached: {near.reason}")
     isolated = near is not None and near.kind is Neighbourhood.ISOLATED
-    if limit.state.scene.contact.section.dimension == 2:
+    if asymptotics_of(limit.state.scene.contact).branch_excesses is None:
         return _in_space(limit, isolated)
     problem = make_local_problem(limit)
     if len(problem.shape) > 2:
@@ -153,7 +154,7 @@ class _FirstOrder(PlaneSearch):
     def __init__(self, problem: LocalProblem, isolated: bool) -> None:
         limit, base = problem.limit, problem.base.copy()
         if limit.gamma.sign is Sign.ZERO and limit.edge:
-            base[problem.kernels.rows.index("edge_plus" if limit.edge == 1 else "edge_minus")] = 0.0
+            base[problem.kernels.rows.edges[limit.edge]] = 0.0
         self.gradients = _gradients(problem)
         kind = KINDS["pair" if isolated else limit.kind]
         super().__init__(problem, TINY, kind, lambda x: TINY * (self.gradients @ x), base=base)
@@ -165,7 +166,7 @@ class _FirstOrder(PlaneSearch):
         """On the critical edge the sign of p may be a question of second order."""
         if branch is not self.critical:
             return super().charts(branch)
-        p = self.gradients[self.problem.kernels.rows.index(SLIPS[branch])]
+        p = self.gradients[self.problem.kernels.rows.edges[SLIPS[branch]]]
         if self.problem.carried == 0.0 and len(p) == 2 and np.any(p) and _parallel(self.problem.limit):
             return self._along_the_constraint(p, branch)
         if np.any(p):
@@ -180,7 +181,7 @@ class _FirstOrder(PlaneSearch):
             return self.within(lambda x: self.contact(x)[None, :])
         tangent = np.array([-g[1], g[0]]) / np.linalg.norm(g)
         # On the tangent g and p vanish to first order: exactly so, not up to rounding.
-        self.gradients[self.problem.kernels.rows.index(SLIPS[branch])] = 0.0
+        self.gradients[self.problem.kernels.rows.edges[SLIPS[branch]]] = 0.0
         return [PlaneChart(size=1, place=lambda box: tangent[:, None] * (2.0 * box[0] - 1.0))]
 
 
@@ -196,7 +197,7 @@ def _gradients(problem: LocalProblem) -> np.ndarray:
 
 def _hessian(problem: LocalProblem, branch: ContactMode) -> np.ndarray:
     """Second derivatives of a + s b on that edge, halved, with respect to the shape coordinates."""
-    row = problem.table[problem.kernels.rows.varying.index(problem.kernels.rows.index(SLIPS[branch]))]
+    row = problem.table[problem.kernels.rows.varying.index(problem.kernels.rows.edges[SLIPS[branch]])]
     form = np.zeros((len(problem.shape), len(problem.shape)))
     for powers, value in zip(problem.powers, row, strict=True):
         axes = [j for j, power in enumerate(powers) for _ in range(power)]

@@ -16,6 +16,7 @@ from painleve.asymptotics.local import Arithmetic, Expansion, LocalProblem, make
 from painleve.asymptotics.member import Member, make_member
 from painleve.core.ball_maps import uniforms_needed
 from painleve.core.codes import ContactMode
+from painleve.core.lane import Evaluation, LaneTally, SamplePlan
 from painleve.core.lattice import kronecker_generators, kronecker_shifts
 from painleve.core.reduce import PAIR, POINT, SEGMENT
 from painleve.core.sampling import BLOCK, Sampler
@@ -70,6 +71,11 @@ class _SampleTally:
     bins: np.ndarray = field(default_factory=lambda: np.full((3, BINS), np.inf))
     bin_index: np.ndarray = field(default_factory=lambda: np.full(BINS, np.iinfo(np.int64).max))
 
+    @property
+    def arrays(self) -> LaneTally:
+        """For a compiled lane."""
+        return LaneTally(self.counts, self.best, self.best_index, self.bins, self.bin_index)
+
     def merge(self, other: _SampleTally) -> None:
         self.counts += other.counts
         sense = np.array([-1.0, 1.0, 1.0])
@@ -87,87 +93,47 @@ class _Stream:
 
     def __init__(self, problem: LocalProblem, eps: float, options: SampleOptions) -> None:
         self.problem, self.options = problem, options
-        self.code = int(Sampler[options.sampler.upper()])
         d, shape = problem.dimension, len(problem.shape)
-        self.in_q = shape + (1 if problem.carried > 0.0 else 0)
-        self.q_uniforms = uniforms_needed(self.in_q, d) if self.in_q else 0
-        self.uniform_rows = self.q_uniforms + uniforms_needed(d, d)
+        in_q = shape + (1 if problem.carried > 0.0 else 0)
+        q_uniforms = uniforms_needed(in_q, d) if in_q else 0
         self.expansion: Expansion | None = problem.expansion(eps, options.arithmetic)
         e = self.expansion
-        self.polynomials = e.polynomials if e else no_polynomials()
-        self.points = (
-            kronecker_generators(shape + d),
-            kronecker_shifts(options.seed, shape + d),
-            float(eps),
-            problem.carried,
-            self.q_uniforms,
-            e is not None,
-            self.polynomials,
-        )
-        self.law = (
-            problem.q,
-            problem.p,
-            problem.base,
-            problem.u,
-            problem.direction,
-            problem.length,
-            problem.impulse,
-            problem.multiplier,
-            problem.critical_edge,
+        self.evaluation = Evaluation(e is not None, e.polynomials if e else no_polynomials())
+        self.plan = SamplePlan(
+            sampler=int(Sampler[options.sampler.upper()]),
+            seed=options.seed,
+            alphas=kronecker_generators(shape + d),
+            shifts=kronecker_shifts(options.seed, shape + d),
+            eps=float(eps),
+            carried=problem.carried,
+            q_uniforms=q_uniforms,
+            uniforms=q_uniforms + uniforms_needed(d, d),
         )
 
     def lane(self, first: int, blocks: int) -> _SampleTally:
-        tally, o, p = _SampleTally(), self.options, self.problem
+        tally, p = _SampleTally(), self.problem
         p.kernels.sample_lane(
+            self.plan,
+            self.evaluation,
             first,
             blocks,
-            o.samples,
-            self.code,
-            o.seed,
-            *self.points,
-            *self.law,
+            self.options.samples,
+            p.base_state,
             KINDS[p.limit.kind],
-            self.uniform_rows,
-            tally.counts,
-            tally.best,
-            tally.best_index,
-            tally.bins,
-            tally.bin_index,
+            tally.arrays,
         )
         return tally
 
     def block(self, start: int) -> tuple[np.ndarray, ...]:
         """(dq, dv, branch, along, beyond, across2) of samples start ... start + BLOCK - 1; dq has all coordinates."""
-        d, shape = self.problem.dimension, len(self.problem.shape)
-        uniform = self.code == Sampler.UNIFORM
-        x = np.empty((shape + (1 if uniform else d), BLOCK))
-        dv = np.empty((d, BLOCK)) if uniform else x[shape:]
-        room, uniforms = np.empty(BLOCK), np.empty((self.uniform_rows, BLOCK))
-        monomials = np.empty((self.polynomials.parents.size, BLOCK))
-        values = np.empty((len(self.problem.table), BLOCK))
-        branch, along, beyond, across2 = np.empty(BLOCK, np.int64), *(np.empty(BLOCK) for _ in range(3))
-        self.problem.kernels.offset_block(
-            self.code,
-            self.options.seed,
-            start,
-            *self.points,
-            *self.law,
-            x,
-            dv,
-            room,
-            uniforms,
-            monomials,
-            values,
-            branch,
-            along,
-            beyond,
-            across2,
-        )
+        d, shape, p = self.problem.dimension, len(self.problem.shape), self.problem
+        offsets, result = p.kernels.empty_block(self.plan, self.evaluation)
+        p.kernels.offset_block(self.plan, self.evaluation, start, p.base_state, offsets, result)
         dq = np.zeros((d, BLOCK))
-        dq[list(self.problem.shape)] = x[:shape]
-        if self.problem.carried > 0.0:
-            dq += self.problem.carried_direction[:, None] * (room / self.problem.carried)
-        return dq, dv.copy(), branch, along, beyond, across2
+        dq[list(p.shape)] = offsets.x[:shape]
+        if p.carried > 0.0:
+            dq += p.carried_direction[:, None] * (offsets.room / p.carried)
+        return dq, offsets.dv.copy(), *result
 
     def member(self, index: int) -> Member:
         """The sample of that index, evaluated rigorously. Raises ArithmeticError where its branch is undecided."""
@@ -255,12 +221,7 @@ def sample_members(limit: LimitSet, eps: float, options: SampleOptions | None = 
 
 def _has(problem: LocalProblem, branch: ContactMode) -> bool:
     """Whether the scene can take that branch at all."""
-    contact = {
-        0: (ContactMode.FRICTIONLESS,),
-        1: (ContactMode.STICK, ContactMode.SLIP_PLUS, ContactMode.SLIP_MINUS),
-        2: (ContactMode.STICK, ContactMode.SLIP),
-    }
-    return branch is ContactMode.FREE or branch in contact[problem.limit.state.scene.contact.section.dimension]
+    return branch is ContactMode.FREE or branch in problem.section.modes
 
 
 def _lanes(stream: _Stream) -> Iterator[_SampleTally]:

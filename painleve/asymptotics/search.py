@@ -1,7 +1,7 @@
 """The search for the farthest member over all configurations in contact, for rows however they are formed.
 
 Over one configuration the law is piecewise linear in v, and the farthest member of each branch is found globally
-(painleve.core.branch_excess). What is left are the shape offsets and, where the tip slips, its impulse: a grid on every
+(painleve.core.excess). What is left are the shape offsets and, where the tip slips, its impulse: a grid on every
 chart, then a stencil that shrinks about the best places.
 """
 
@@ -15,8 +15,8 @@ import numpy as np
 
 from painleve.asymptotics.charts import Conditions, PlaneChart, charts
 from painleve.asymptotics.local import LocalProblem
-from painleve.core.branch_excess import REACH, branch_excesses
 from painleve.core.codes import ContactMode
+from painleve.core.excess import REACH
 
 __all__ = ["SLIPS", "FarthestMember", "PlaneSearch", "lattice"]
 
@@ -24,7 +24,7 @@ GRIDS = {0: 1, 1: 33, 2: 9, 3: 9}  # points an axis of a box of that size
 LAST_STEP = 2.0**-36
 MOST_ROUNDS = 400  # for places from which a top is approached slowly; the second search shows what was left
 PROGRESS = 1e-15  # relative; less is rounding, on which a search could wander for ever
-SLIPS = {ContactMode.SLIP_PLUS: "edge_plus", ContactMode.SLIP_MINUS: "edge_minus"}
+SLIPS = {ContactMode.SLIP_PLUS: 1, ContactMode.SLIP_MINUS: -1}  # edges of the cone
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -56,8 +56,10 @@ class PlaneSearch:
         set (painleve.core.reduce); starts: how many of the grid's best places are refined."""
         self.problem, self.eps, self.kind, self.differences = problem, eps, kind, differences
         self.base, self.starts = problem.base if base is None else base, starts
-        planar = problem.limit.state.scene.contact.section.dimension
-        self.branches: tuple[ContactMode, ...] = (ContactMode.STICK, *SLIPS) if planar else (ContactMode.FRICTIONLESS,)
+        self.state = problem.base_state._replace(base=self.base)
+        excesses = problem.section.branch_excesses
+        assert excesses is not None  # in space: painleve.asymptotics.space.search
+        self.branches, self.branch_excesses = problem.section.modes, excesses
         self.counts = {b.label: 0 for b in (ContactMode.FREE, *self.branches)}
 
     def contact(self, x: np.ndarray) -> np.ndarray:
@@ -67,7 +69,7 @@ class PlaneSearch:
 
     def edge(self, branch: ContactMode, x: np.ndarray) -> np.ndarray:
         """a + s b on the branch's edge of the cone."""
-        row = self.problem.kernels.rows.index(SLIPS[branch])
+        row = self.problem.kernels.rows.edges[SLIPS[branch]]
         return self.base[row] + self.differences(x)[row]
 
     def charts(self, branch: ContactMode) -> Sequence[PlaneChart]:
@@ -93,19 +95,13 @@ class PlaneSearch:
         n = int(known.sum())
         value, dv, impulse = np.empty(n), np.zeros((p.dimension, n)), np.empty(n)
         share = np.ascontiguousarray(box[-1][known]) if branch in SLIPS else np.zeros(n)
-        branch_excesses(
+        self.branch_excesses(
             int(branch),
             kind,
-            self.base,
+            self.state,
             self.differences(x[:, known]),
             share,
             self.eps,
-            p.u,
-            p.direction,
-            p.length,
-            p.impulse,
-            p.multiplier,
-            p.critical_edge,
             value,
             dv,
             impulse,

@@ -9,6 +9,7 @@ from enum import Enum
 import numpy as np
 
 from painleve.asymptotics.distance import Distance
+from painleve.asymptotics.sections.listed import asymptotics_of
 from painleve.asymptotics.witness import find_family
 from painleve.sets import Bounds
 from painleve.theory.classification import Branch, Classification
@@ -170,7 +171,8 @@ def _enclosed(classification: Classification, evidence: Sequence[Evidence]) -> b
 
 def _least_slope(classification: Classification) -> float:
     limit = classification.limit
-    return LEAST_SLOPE_OF_ROOT if limit.critical and limit.state.scene.contact.section.dimension == 2 else LEAST_SLOPE
+    slow = limit.critical and asymptotics_of(limit.state.scene.contact).slowest_power < 1.0
+    return LEAST_SLOPE_OF_ROOT if slow else LEAST_SLOPE
 
 
 def _middle_is_away(half: float, evidence: Evidence) -> bool:

@@ -15,7 +15,8 @@ from functools import partial
 import flint
 import numpy as np
 
-from painleve.asymptotics.local import BITS, LocalProblem, make_local_problem
+from painleve.asymptotics.ball_arithmetic import BITS, is_inside
+from painleve.asymptotics.local import LocalProblem, make_local_problem
 from painleve.asymptotics.member import Member, base_balls, distance_to_point, make_member, row_balls
 from painleve.asymptotics.space.witness import path_bound, path_members
 from painleve.core.codes import ContactMode
@@ -130,7 +131,7 @@ def _witness(problem: LocalProblem, fraction: float, eps: float, member: Member,
 def _towards_sticking(problem: LocalProblem, eps: float, within: float) -> tuple[Member, str]:
     """At q itself, v_n -> 0-: the tip sticks, and S is as near to u_tilde as v is to u-, up to a constant."""
     inward = problem.normal / np.linalg.norm(problem.normal)
-    size, ratio = 0.5 * eps, SPACE_STEP if _in_space(problem) else STEP
+    size, ratio = 0.5 * eps, STEP if problem.section.affine else SPACE_STEP
     while size > 0.0:
         member = make_member(problem, _zeros(problem), [flint.arb(float(-size * x)) for x in inward])
         if distance_to_point(problem, member, 1.0)[1] <= within:
@@ -144,14 +145,14 @@ def _positive_neighbours(problem: LocalProblem, eps: float) -> Iterator[list[fli
     if not problem.analytic:
         return  # no derivatives say in which directions gamma grows
     directions = list(_directions(problem))
-    ratio, smallest = (SPACE_STEP, SMALLEST_SPACE_STEP) if _in_space(problem) else (STEP, SMALLEST_STEP)
+    ratio, smallest = (STEP, SMALLEST_STEP) if problem.section.affine else (SPACE_STEP, SMALLEST_SPACE_STEP)
     step = 0.5
     while step >= smallest:
         for direction, follow in directions:
             dq = [flint.arb(float(step * eps * x)) for x in direction]
             if follow:
                 dq = _onto_constraint(problem, dq, step * eps)
-            if _admits_slip(problem, dq) and _inside(dq, eps):
+            if _admits_slip(problem, dq) and is_inside(dq, eps):
                 yield dq
                 break
         step *= ratio
@@ -186,7 +187,7 @@ def _unit(x: np.ndarray) -> np.ndarray:
 def _derivatives(problem: LocalProblem) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Gradient and Hessian of the critical edge's compliance and of g, in all coordinates."""
     rows = problem.kernels.rows
-    grad_p, form_p = _second_order(problem, rows.edge(problem.limit.edge))
+    grad_p, form_p = _second_order(problem, rows.edges[problem.limit.edge])
     _, form_g = _second_order(problem, rows.parts.g)
     return grad_p, form_p, -problem.normal, form_g
 
@@ -220,17 +221,12 @@ def _onto_constraint(problem: LocalProblem, dq: list[flint.arb], size: float) ->
 
 def _admits_slip(problem: LocalProblem, dq: list[flint.arb]) -> bool:
     rows = row_balls(problem, dq)
-    return bool(rows[problem.parts.g] >= 0) and bool(rows[problem.kernels.rows.edge(problem.limit.edge)] > 0)
-
-
-def _inside(x: list[flint.arb], eps: float) -> bool:
-    with flint.ctx.workprec(BITS):
-        return bool(sum((y * y for y in x), flint.arb(0)) <= flint.arb(float(eps)) ** 2)
+    return bool(rows[problem.parts.g] >= 0) and bool(rows[problem.kernels.rows.edges[problem.limit.edge]] > 0)
 
 
 def _slipping_velocity(problem: LocalProblem, dq: list[flint.arb], fraction: float) -> list[flint.arb]:
     """The least dv with v_n = -fraction lambda_tilde (a + s b)(q_eps)."""
-    edge = problem.kernels.rows.edge(problem.limit.edge)
+    edge = problem.kernels.rows.edges[problem.limit.edge]
     with flint.ctx.workprec(BITS):
         rows, (_, _, u), impulse = row_balls(problem, dq), base_balls(problem), problem.exact_multiplier
         w_n = rows[problem.parts.w_n]
@@ -242,17 +238,12 @@ def _slipping_velocity(problem: LocalProblem, dq: list[flint.arb], fraction: flo
 
 def _slipping_member(problem: LocalProblem, dq: list[flint.arb], fraction: float, eps: float) -> Member | None:
     dv = _slipping_velocity(problem, dq, fraction)
-    if not _inside(dv, eps):
+    if not is_inside(dv, eps):
         return None
     try:
         return make_member(problem, dq, dv)
     except ArithmeticError:
         return None
-
-
-def _in_space(problem: LocalProblem) -> bool:
-    """Whether friction is in space."""
-    return problem.limit.state.scene.contact.section.dimension == 2
 
 
 def _path_over(problem: LocalProblem, dq: list[flint.arb], eps: float) -> Family | None:
@@ -266,7 +257,7 @@ def _path_over(problem: LocalProblem, dq: list[flint.arb], eps: float) -> Family
 
 def _family_over(problem: LocalProblem, dq: list[flint.arb], eps: float) -> Family | None:
     """Members over one configuration from lambda_bar = 0+ to nearly lambda_tilde, all of them slipping."""
-    if _in_space(problem):
+    if not problem.section.affine:
         return _path_over(problem, dq, eps)
     slip = ContactMode.SLIP_PLUS if problem.limit.edge == 1 else ContactMode.SLIP_MINUS
     size = max(abs(float(x.mid())) for x in dq)

@@ -31,13 +31,15 @@ def distance_squared(kind, along, beyond, across2):
 
 
 @jit
-def reduce_block(kind, length, start, size, branch, along, beyond, across2, counts, best, best_index, bins, bin_index):
-    """Fold the first `size` samples of a block into a lane's state.
+def reduce_block(kind, length, start, size, result, tally):
+    """Fold the first `size` samples of a painleve.core.lane.BlockResult into a LaneTally.
 
     best: [farthest from the limit set, nearest to u-, nearest to u_tilde], squared; best_index: where.
     bins: (3, K) of along, beyond and across2 of the sample nearest to the line in each K-th of the segment.
     """
-    branch, along, beyond, across2 = branch[:size], along[:size], beyond[:size], across2[:size]
+    branch, along = result.branch[:size], result.along[:size]
+    beyond, across2 = result.beyond[:size], result.across2[:size]
+    counts, best, best_index, bins, bin_index = tally
     for code in range(counts.size):
         counts[code] += _count(branch, code)
     if _records(kind, along, beyond, across2, best[0], best[1], best[2]) > 0:

@@ -8,8 +8,7 @@
 for d coordinates: w_n = -grad g, Y_n = M^-1 w_n, Y_t = M^-1 H, and W^T M^-1 W = [[a, b^T], [b, C]], the upper half of
 C. Discs and ellipses come as the unit disc: with the section E times that disc, H stands for H E, and so on.
 
-The section adds, for a segment [-mu_minus, mu_plus], edge_minus, mu_plus, mu_minus (edge_minus: the compliance on the
-edge s = -mu_minus); for a polygon of n vertices s_i, p_1 ... p_n with p_i = a + b.s_i, then s_1, ..., s_n (2 each).
+What a section adds has its order in painleve.core.sections: SegmentRows, PolygonRows.
 
 Offsets are numbers of compiled code too: there `row_layout` costs nothing, for it is inlined and its sums are folded.
 """
@@ -20,7 +19,7 @@ from typing import NamedTuple
 
 from painleve._jit import jit
 
-__all__ = ["RowLayout", "RowParts", "polygon_rows", "row_layout", "row_parts", "segment_rows"]
+__all__ = ["RowLayout", "RowParts", "row_layout", "row_parts"]
 
 
 class RowLayout(NamedTuple):
@@ -52,33 +51,6 @@ def _row_layout(d, k):
 
 row_layout = jit(_row_layout)
 """The layout for d coordinates and k tangents."""
-
-
-class SegmentRows(NamedTuple):
-    """What a segment adds."""
-
-    edge_minus: int
-    mu_plus: int
-    mu_minus: int
-
-
-@jit
-def segment_rows(layout):
-    """Where a segment's rows are."""
-    return SegmentRows(layout.section, layout.section + 1, layout.section + 2)
-
-
-class PolygonRows(NamedTuple):
-    """Where a polygon's compliances and vertices begin."""
-
-    p: int
-    s: int
-
-
-@jit
-def polygon_rows(layout, vertices):
-    """Where the rows of a polygon of that many vertices are."""
-    return PolygonRows(layout.section, layout.section + vertices)
 
 
 class RowParts(NamedTuple):

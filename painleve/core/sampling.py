@@ -35,27 +35,27 @@ BOUNDARY_WEIGHT = 2  # 1 - r becomes (1 - r)^4: half of the samples are within 7
 
 
 @jit
-def sample_block(
-    sampler, seed, start, alphas, shifts, eps, carried, dimension, q_uniforms, uniforms, q_rows, x, dv, room
-):
-    """Fill one block: dq in the first rows of `x`, dv, and `room`.
+def sample_block(plan, start, dimension, q_rows, offsets):
+    """Fill one block of the painleve.core.lane.SamplePlan: dq in the first rows of `x`, dv, and `room`.
 
     `x` has the q_rows shape offsets and below them, for the low-discrepancy samplers, the d rows that `dv` views; for
-    the uniform one, a row for the carried combination if `carried` > 0, the norm of dg/d(carried coordinates). The
-    first `q_uniforms` rows of `uniforms` serve q, the rest v.
+    the uniform one, a row for the carried combination if there is one. The first `q_uniforms` rows of `uniforms` serve
+    q, the rest v.
     """
-    if sampler == UNIFORM:
-        uniform_block(seed, start, uniforms)
+    x, dv, room, uniforms = offsets.x, offsets.dv, offsets.room, offsets.uniforms
+    eps, carried = plan.eps, plan.carried
+    if plan.sampler == UNIFORM:
+        uniform_block(plan.seed, start, uniforms)
         in_q = q_rows + (1 if carried > 0.0 else 0)
         if in_q > 0:
-            uniform_ball(uniforms[:q_uniforms], x[:in_q], eps, dimension)
-        uniform_ball(uniforms[q_uniforms:], dv, eps, dimension)
+            uniform_ball(uniforms[: plan.q_uniforms], x[:in_q], eps, dimension)
+        uniform_ball(uniforms[plan.q_uniforms :], dv, eps, dimension)
         share = carried * (1.0 - ROOM_MARGIN) if carried > 0.0 else 0.0
         for i in range(room.size):
             room[i] = share * x[in_q - 1, i] if carried > 0.0 else 0.0
         return
-    kronecker_block(start, alphas, shifts, x)
-    weight = BOUNDARY_WEIGHT if sampler == BOUNDARY else 0
+    kronecker_block(start, plan.alphas, plan.shifts, x)
+    weight = BOUNDARY_WEIGHT if plan.sampler == BOUNDARY else 0
     if q_rows > 0:
         cube_to_ball(x[:q_rows], eps, weight)
     cube_to_ball(dv, eps, weight)

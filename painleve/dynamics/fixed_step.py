@@ -10,6 +10,7 @@ from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Ending
 from painleve.core.stepping import SteppingMethod, Track
 from painleve.dynamics.grid import TimeGrid
+from painleve.dynamics.sections.listed import dynamics_of
 from painleve.dynamics.start import Start
 from painleve.dynamics.trajectory import Trajectory
 
@@ -20,9 +21,9 @@ CHUNK = 100_000  # steps: some ten milliseconds
 
 def empty_track(start: Start, steps: int) -> Track:
     """Room for that many steps from the start, which is in its first row."""
-    n, d, k = steps + 1, start.scene.dimension, start.scene.friction_dimension
+    n, d, k = steps + 1, start.scene.dimension, len(dynamics_of(start.scene.contact).tangential)
     codes = {name: np.zeros(n, np.int8) for name in ("branch", "change", "several")}
-    track = Track(q=np.zeros((n, d)), u=np.zeros((n, d)), r=np.zeros((n, 1 + max(1, k))), **codes)
+    track = Track(q=np.zeros((n, d)), u=np.zeros((n, d)), r=np.zeros((n, 1 + k)), **codes)
     track.q[0], track.u[0] = start.q, start.u
     return track
 
@@ -52,7 +53,7 @@ def run_fixed_step(
         ending = Ending.INTERRUPTED
     kept = Track(*(column[: done + 1] for column in track))
     statistics = {b.label: int((kept.branch[1:] == b).sum()) for b in ContactMode}
-    if start.scene.friction_dimension < 2:  # in space other solutions of Coulomb's law are not counted
+    if dynamics_of(start.scene.contact).counts_solutions:
         statistics["steps_with_several_solutions"] = int((kept.several > 1).sum())
     return Trajectory(
         scheme=name,

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from painleve.core.codes import ContactMode
-from painleve.core.law import stick_impulse
+from painleve.core.rows import RowParts
+from painleve.core.sections import none, segment
 from painleve.dynamics.start import Start
 
 __all__ = ["ContactPoint", "Mode", "closed_modes"]
@@ -25,8 +26,8 @@ class ContactPoint:
     """The contact at one instant: rows of the scene, M^-1 f, velocities v and free accelerations beta of the tip."""
 
     rows: tuple[float, ...]
+    parts: RowParts
     acceleration: tuple[float, ...]
-    d: int
     planar: bool
     v_n: float
     v_t: float
@@ -35,17 +36,17 @@ class ContactPoint:
 
     @staticmethod
     def at(start: Start, t: float, q: np.ndarray, u: np.ndarray) -> ContactPoint:
-        motion, d = start.motion, len(q)
+        motion, at = start.motion, start.motion.rows.parts
         state = tuple(map(float, q)), tuple(map(float, u))
         rows, acceleration = motion.motion_at(float(t), *state, start.p)
         drift_n, drift_t = motion.drift_at(*state, start.p)
-        normal = rows[1 : 1 + d]
-        tangent = rows[3 + 2 * d : 3 + 3 * d] if motion.planar else (0.0,) * d
+        normal = rows[at.w_n]
+        tangent = rows[at.H[0]] if at.H else (0.0,) * len(q)
         return ContactPoint(
             rows=rows,
+            parts=at,
             acceleration=acceleration,
-            d=d,
-            planar=motion.planar,
+            planar=bool(at.H),
             v_n=_dot(normal, state[1]),
             v_t=_dot(tangent, state[1]),
             beta_n=_dot(normal, acceleration) + drift_n,
@@ -53,24 +54,30 @@ class ContactPoint:
         )
 
     @property
+    def g(self) -> float:
+        return self.rows[self.parts.g]
+
+    @property
     def a(self) -> float:
-        return self.rows[1 + 2 * self.d]
+        return self.rows[self.parts.a]
 
     @property
     def b(self) -> float:
-        return self.rows[3 + 4 * self.d]
+        return self.rows[self.parts.b][0]
 
     @property
     def C(self) -> float:
-        return self.rows[4 + 4 * self.d]
+        return self.rows[self.parts.C][0]
 
     def ratio(self, mode: Mode) -> float:
         """s = lambda_t/lambda_n of a slipping mode."""
-        return self.rows[6 + 4 * self.d] if mode is Mode.SLIP_PLUS else -self.rows[7 + 4 * self.d]
+        _, mu_plus, mu_minus = self.rows[self.parts.section]
+        return mu_plus if mode is Mode.SLIP_PLUS else -mu_minus
 
     def edge(self, mode: Mode) -> float:
         """a + b s of a slipping mode."""
-        return self.rows[2 + 2 * self.d] if mode is Mode.SLIP_PLUS else self.rows[5 + 4 * self.d]
+        edge_minus, _, _ = self.rows[self.parts.section]
+        return self.rows[self.parts.edge_plus] if mode is Mode.SLIP_PLUS else edge_minus
 
     def presses(self, mode: Mode) -> bool:
         """Whether a slipping mode has a positive contact force: none is derived from an edge that rounding made."""
@@ -84,7 +91,7 @@ class ContactPoint:
         if mode is Mode.FRICTIONLESS:
             return -self.beta_n / self.a, 0.0
         if mode is Mode.STICK:
-            return stick_impulse(self.a, self.b, self.C, self.beta_n, self.beta_t)
+            return segment.stick_impulse(self.a, self.b, self.C, self.beta_n, self.beta_t)
         edge = self.edge(mode)
         normal = -self.beta_n / edge if edge != 0.0 else math.copysign(math.inf, -self.beta_n)
         return normal, self.ratio(mode) * normal
@@ -98,23 +105,30 @@ class ContactPoint:
 
     def reserve_noise(self, side: Mode) -> float:
         """What rounding may do to `reserve`, from the sizes of the terms that it is made of."""
-        d = self.d
-        size_n = _size(self.rows[1 : 1 + d], self.acceleration, self.beta_n)
-        size_t = _size(self.rows[3 + 2 * d : 3 + 3 * d], self.acceleration, self.beta_t)
+        size_n = _size(self.rows[self.parts.w_n], self.acceleration, self.beta_n)
+        size_t = _size(self.rows[self.parts.H[0]], self.acceleration, self.beta_t)
         b, s = abs(self.b), abs(self.ratio(side))
         terms = b * size_n + self.a * size_t + s * (self.C * size_n + b * size_t)
         return ROUNDING * terms / (self.a * self.C - self.b * self.b)
 
+    def impact(self) -> tuple[float, float, ContactMode]:
+        """The impulse of S at a velocity that approaches, and its branch."""
+        d = len(self.acceleration)
+        if not self.planar:
+            (normal,), code = none.impulse(self.rows, d, (self.v_n,), 0.0)
+            return normal, 0.0, ContactMode(code)
+        (normal, tangential), code = segment.impulse(self.rows, d, (self.v_n, self.v_t), 0.0)
+        return normal, tangential, ContactMode(code)
+
     def stopping_impulse(self) -> tuple[float, float]:
         """The impulse that stops the tip."""
-        return stick_impulse(self.a, self.b, self.C, self.v_n, self.v_t)
+        return segment.stick_impulse(self.a, self.b, self.C, self.v_n, self.v_t)
 
     def response(self, normal: float, tangential: float) -> np.ndarray:
         """M^-1 W of an impulse or a force, (d,)."""
-        d = self.d
-        change = normal * np.array(self.rows[1 + d : 1 + 2 * d])
+        change = normal * np.array(self.rows[self.parts.Y_n])
         if self.planar:
-            change += tangential * np.array(self.rows[3 + 3 * d : 3 + 4 * d])
+            change += tangential * np.array(self.rows[self.parts.Y_t[0]])
         return change
 
 

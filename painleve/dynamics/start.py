@@ -39,6 +39,11 @@ class Start:
         """The scene's rows at the start (painleve.core.rows)."""
         return self.motion.rows_at(self.q, self.p)
 
+    @property
+    def g(self) -> float:
+        """g(q) at the start."""
+        return self.rows[self.motion.rows.parts.g]
+
     def tabulate(self, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Rows (n, rows), M (n, d, d) and f (n, d) at many instants: t (n,), q, u (n, d)."""
         n, d = q.shape
@@ -102,7 +107,8 @@ def _checked(
     if not (np.isfinite(M).all() and np.linalg.eigvalsh(M)[0] > 0.0):
         raise InputError(f"{where}: M is not positive definite there; choose another configuration")
     rows = motion.rows_at(q, p)
-    rounding = ROUNDING * (1.0 + sum(abs(x * w) for x, w in zip(q, rows[1 : 1 + d], strict=True)))
-    if rows[0] > rounding:
-        raise InputError(f"{where}: not admissible: g(q) = {rows[0]:.6g} must not be positive; move the body out")
+    rounding = ROUNDING * (1.0 + sum(abs(x * w) for x, w in zip(q, rows[motion.rows.parts.w_n], strict=True)))
+    g = rows[motion.rows.parts.g]
+    if g > rounding:
+        raise InputError(f"{where}: not admissible: g(q) = {g:.6g} must not be positive; move the body out")
     return Start(scene=scene, label=label, p=p, t=t, q=q, u=u, rounding=rounding)

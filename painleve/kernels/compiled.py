@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+from painleve.core.lane import BlockOffsets, BlockResult
 from painleve.kernels.files import load_generated
 from painleve.kernels.rows import Rows, rows_of
 from painleve.kernels.source import scene_source
@@ -27,6 +28,7 @@ class Kernels:
     rows_at: Callable[..., None]
     varying_block: Callable[..., None]
     law_block: Callable[..., None]
+    empty_block: Callable[..., tuple[BlockOffsets, BlockResult]]
     offset_block: Callable[..., None]
     sample_lane: Callable[..., None]
     law_at: Callable[..., int]
@@ -51,6 +53,7 @@ def make_kernels(scene: Scene) -> Kernels:
         rows_at=module.rows_at,
         varying_block=module.varying_block,
         law_block=module.law_block,
+        empty_block=module.empty_block,
         offset_block=module.offset_block,
         sample_lane=module.sample_lane,
         law_at=module.law_at,

@@ -2,17 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Protocol
 
-from painleve.kernels.rows import Rows
+import sympy as sp
 
-__all__ = ["Names", "total", "velocity_difference"]
+__all__ = ["Names", "offset_lines", "total", "velocity_difference"]
+
+
+class TableOfRows(Protocol):
+    """What is used of painleve.kernels.rows.Rows."""
+
+    @property
+    def names(self) -> tuple[str, ...]: ...
+    @property
+    def expressions(self) -> tuple[sp.Expr, ...]: ...
+    @property
+    def varying(self) -> tuple[int, ...]: ...
+    def index(self, name: str) -> int: ...
 
 
 class Names:
     """How a row's value and its difference from the base are written in the law's loop."""
 
-    def __init__(self, rows: Rows) -> None:
+    def __init__(self, rows: TableOfRows) -> None:
         self.rows = rows
         self.slot = {r: k for k, r in enumerate(rows.varying)}
 
@@ -55,3 +68,15 @@ def velocity_difference(names: Names, prefix: str, axes: Sequence[str]) -> str:
         if not names.is_zero(name):
             terms.append(f"{name}*dv_{j}")
     return total(terms)
+
+
+def offset_lines(names: Names, axes: Sequence[str], responses: Mapping[str, str], base: str) -> list[str]:
+    """z = dv + tau dY r + Y e, component by component: `responses` are the prefixes of the rows of Y with the names of
+    their impulses, r = base_<name>, e = e_<name>."""
+    lines = []
+    for j, x in enumerate(axes):
+        moved = [f"d_{y}_{x}*{base}_{i}" for y, i in responses.items() if names.difference(f"{y}_{x}")]
+        terms = [f"dv_{j}"] + ([f"tau*({total(moved)})"] if moved else [])
+        terms += [f"{y}_{x}*e_{i}" for y, i in responses.items() if not names.is_zero(f"{y}_{x}")]
+        lines.append(f"z_{j} = {total(terms)}")
+    return lines

@@ -157,23 +157,6 @@ class Scene:
     def dimension(self) -> int:
         return len(self.coordinates)
 
-    # Until the schemes read the contact themselves.
-    @property
-    def constraint(self) -> sp.Expr:
-        return self.contact.constraint
-
-    @property
-    def tangents(self) -> sp.ImmutableMatrix:
-        return self.contact.tangents
-
-    @property
-    def friction(self) -> Section | None:
-        return self.contact.section if self.friction_dimension else None
-
-    @property
-    def friction_dimension(self) -> int:
-        return self.contact.section.dimension
-
     def parameter(self, name: str) -> Parameter:
         for parameter in self.parameters:
             if parameter.name == name:

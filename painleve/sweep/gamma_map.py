@@ -138,7 +138,7 @@ def _gamma(path: _Path, friction: np.ndarray) -> np.ndarray:
 
 def _follow(kernels: Kernels, state: State, values: np.ndarray) -> _Path:
     """Evaluate the rows along the path, outwards from the state in both senses."""
-    index = kernels.rows.index
+    at = kernels.rows.parts
     table = np.full((len(values), len(kernels.rows.names)), np.nan)
     start = int(np.searchsorted(values, state.number(state.q[kernels.derivation.shape[0]])))
     for order in (range(start, len(values)), range(start - 1, -1, -1)):
@@ -148,24 +148,26 @@ def _follow(kernels: Kernels, state: State, values: np.ndarray) -> _Path:
             if rows is None:
                 break
             table[i] = rows
-    a, squared = table[:, index("a")], np.sum(table[:, 1 : 1 + kernels.scene.dimension] ** 2, axis=1)
-    if kernels.scene.contact.section.dimension == 2:  # the rows have a disc as the unit disc
+    a, squared = table[:, at.a], np.sum(table[:, at.w_n] ** 2, axis=1)
+    if len(at.H) > 1:  # the rows have a disc as the unit disc
         friction = _coefficients(kernels, state, values)
-        return _Path(a=a, b=(a - table[:, index("edge_plus")]) / friction, squared=squared, friction=friction)
-    return _Path(a=a, b=np.abs(table[:, index("b")]), squared=squared, friction=table[:, index("mu_plus")])
+        return _Path(a=a, b=(a - table[:, at.edge_plus]) / friction, squared=squared, friction=friction)
+    _, mu_plus, _ = table[:, at.section].T
+    return _Path(a=a, b=np.abs(table[:, at.b])[:, 0], squared=squared, friction=mu_plus)
 
 
 def _coefficients(kernels: Kernels, state: State, values: np.ndarray) -> np.ndarray:
     """The disc's coefficient of friction along the path."""
     scene, index = kernels.scene, kernels.derivation.shape[0]
-    mu = scene.contact.section.mu.xreplace({s: x for s, x in state.substitution.items() if s != scene.q[index]})  # type: ignore[attr-defined]
+    own = scene.contact.section.expressions[0]
+    mu = own.xreplace({s: x for s, x in state.substitution.items() if s != scene.q[index]})
     return np.array([float(mu.xreplace({scene.q[index]: sp.Float(x)})) for x in values])
 
 
 def _touch(kernels: Kernels, state: State, q: np.ndarray, value: float) -> np.ndarray | None:
     """Move q, in place, to that value of the path's coordinate, with g = 0 again; its rows, or None if it cannot."""
     p = np.array([state.number(state.parameters[s.name]) for s in state.scene.parameters])
-    rows = np.empty(len(kernels.rows.names))
+    rows, at = np.empty(len(kernels.rows.names)), kernels.rows.parts
     shape = kernels.derivation.shape
     q[shape[0]] = value
     kernels.rows_at(q, p, rows)
@@ -173,11 +175,11 @@ def _touch(kernels: Kernels, state: State, q: np.ndarray, value: float) -> np.nd
         return rows
     follower, before = shape[1], q[shape[1]]
     for _ in range(NEWTON_STEPS):
-        if abs(rows[0]) <= TOUCHING:
+        if abs(rows[at.g]) <= TOUCHING:
             return rows
-        slope = rows[1 + follower]  # row 1 + i is -dg/dq_i
-        if slope == 0.0 or abs(q[follower] + rows[0] / slope - before) > LARGEST_STEP:
+        slope = rows[at.w_n][follower]  # -dg/dq_i
+        if slope == 0.0 or abs(q[follower] + rows[at.g] / slope - before) > LARGEST_STEP:
             return None
-        q[follower] += rows[0] / slope
+        q[follower] += rows[at.g] / slope
         kernels.rows_at(q, p, rows)
     return None

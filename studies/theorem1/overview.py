@@ -53,7 +53,7 @@ def _of_scene(dataset: xr.Dataset) -> xr.Dataset:
             "half_jump": number(("case",), dataset["half_jump"].values, "half the distance between u- and u_tilde"),
             "slope": number(("case",), dataset["slope"].values, "slope of the first excess, in logarithms"),
             "tangents": number(
-                ("case",), np.full(count, scene.friction_dimension), "number of tangents of the contact"
+                ("case",), np.full(count, scene.contact.section.dimension), "number of tangents of the contact"
             ),
             "theorem_branch": coded(
                 ["case"], dataset["theorem_branch"].values, BRANCHES, "branch of Theorem 1, by exact arithmetic"

@@ -8,7 +8,8 @@ import flint
 import numpy as np
 import xarray as xr
 
-from painleve.asymptotics.local import BITS, Arithmetic, LocalProblem, make_local_problem
+from painleve.asymptotics.ball_arithmetic import BITS
+from painleve.asymptotics.local import Arithmetic, LocalProblem, make_local_problem
 from painleve.asymptotics.member import Member, base_balls, make_member, row_balls
 from painleve.asymptotics.optimise import optimise_distance
 from painleve.asymptotics.sample import SampleOptions, check_radii, sample_distance
@@ -150,7 +151,7 @@ def _quantities(problem: LocalProblem, member: Member) -> tuple[float, float, fl
         rows, u = row_balls(problem, [flint.arb(float(x)) for x in member.dq]), base_balls(problem)[2]
         v = [x + flint.arb(float(y)) for x, y in zip(u, member.dv, strict=True)]
         v_n = sum((w * x for w, x in zip(rows[table.parts.w_n], v, strict=True)), flint.arb(0))
-        gamma = rows[table.edge(problem.limit.edge)]
+        gamma = rows[table.edges[problem.limit.edge]]
         return float(gamma.mid()), float(v_n.mid()), sum(member.distance) / 2.0
 
 

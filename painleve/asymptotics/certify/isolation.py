@@ -19,10 +19,11 @@ from math import prod
 import flint
 import numpy as np
 
+from painleve.asymptotics.ball_arithmetic import BITS
 from painleve.asymptotics.certify.branch_and_bound import BoxSearch
 from painleve.asymptotics.certify.pieces import stick_piece
 from painleve.asymptotics.certify.preimage import candidate_member
-from painleve.asymptotics.local import BITS, LocalProblem
+from painleve.asymptotics.local import LocalProblem
 from painleve.asymptotics.member import Member, base_balls, make_member
 from painleve.asymptotics.witness import find_witness
 from painleve.errors import InputError

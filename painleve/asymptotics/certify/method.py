@@ -27,6 +27,7 @@ from painleve.asymptotics.local import LocalProblem, make_local_problem
 from painleve.asymptotics.member import Member
 from painleve.asymptotics.optimise import farthest_member
 from painleve.asymptotics.sample import check_eps
+from painleve.asymptotics.sections.listed import asymptotics_of
 from painleve.asymptotics.witness import find_family
 from painleve.core.codes import ContactMode
 from painleve.errors import InputError
@@ -81,7 +82,7 @@ def certify_distance(limit: LimitSet, eps: float, options: CertifyOptions | None
     options, eps = options or CertifyOptions(), check_eps(eps)
     if limit.kind == "undecided":
         raise InputError(f"state {limit.state.label}: no distance to a limit set that is undecided: {limit.reason}")
-    if limit.state.scene.contact.section.dimension == 2:
+    if asymptotics_of(limit.state.scene.contact).branch_excesses is None:
         raise InputError(
             f"certify: scene {limit.state.scene.name} has friction in space, which this method does not "
             "search; use the methods sample or optimise"

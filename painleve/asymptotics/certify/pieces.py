@@ -20,13 +20,14 @@ from typing import Literal
 import flint
 import numpy as np
 
+from painleve.asymptotics.ball_arithmetic import BITS
 from painleve.asymptotics.certify.cover import Cover
 from painleve.asymptotics.certify.taylor_models import Models, TaylorModel, expand, make_models, taylor_order
-from painleve.asymptotics.local import BITS, LocalProblem
+from painleve.asymptotics.local import LocalProblem
 from painleve.asymptotics.member import base_balls, jump_balls
 from painleve.core.codes import ContactMode
+from painleve.core.sections.segment import undivided_stop
 from painleve.errors import InputError
-from painleve.mechanics.friction import Segment
 
 __all__ = ["Constraint", "Map", "Piece", "contact_pieces", "stick_piece"]
 
@@ -91,10 +92,8 @@ class _Build:
         adjugate = scene.inertia.adjugate()  # expanded before it is divided by det M: remainders stay small
         expressions = [scene.contact.constraint, scene.inertia.det(method="berkowitz"), *derivation.normal]
         expressions += [*(adjugate * derivation.normal)]
-        H, section = scene.contact.tangents, scene.contact.section
-        self.planar = isinstance(section, Segment)
-        if isinstance(section, Segment):
-            expressions += [*H, *(adjugate * H), section.plus, section.minus]
+        H, edges = scene.contact.tangents, scene.contact.section.edges
+        expressions += [*H, *(adjugate * H), *(derivation.edge_direction(edge)[0] for edge in edges)]
         found = expand(problem, eps, expressions, taylor_order(len(problem.shape), eps))
         inverse = found[1].reciprocal()
         self.zero = found[0].scale(flint.arb(0))
@@ -103,9 +102,10 @@ class _Build:
         self.w_n, self.Y_n = found[2 : 2 + d], [f * inverse for f in found[2 + d : 2 + 2 * d]]
         self.nu = self.scaled(self.dot(self.w_n, self.u).vanishing())
         self.a = self.product(self.w_n, self.Y_n)
-        if self.planar:
+        self.frictional = bool(edges)
+        if self.frictional:
             self.H, self.Y_t = found[2 + 2 * d : 2 + 3 * d], [f * inverse for f in found[2 + 3 * d : 2 + 4 * d]]
-            self.s = {1: found[-2], -1: found[-1].scale(flint.arb(-1))}
+            self.s = dict(zip(edges, found[2 + 4 * d :], strict=True))
             self.b, self.C = self.product(self.w_n, self.Y_t), self.product(self.H, self.Y_t)
             self.eta = self.dot(self.H, self.u)
             self.one_over_det = (self.a * self.C - self.b * self.b).reciprocal()
@@ -146,9 +146,8 @@ class _Build:
 
     def stick_impulse(self, v_n: TaylorModel, v_t: TaylorModel) -> tuple[TaylorModel, TaylorModel]:
         """-G^-1 (v_n, v_t)."""
-        r_n = (self.b * v_t - self.C * v_n) * self.one_over_det
-        r_t = (self.b * v_n - self.a * v_t) * self.one_over_det
-        return r_n, r_t
+        r_n, r_t = undivided_stop(self.a, self.b, self.C, v_n, v_t)
+        return r_n * self.one_over_det, r_t * self.one_over_det
 
     def cone_constraint(self, sense: int, sign: int) -> Constraint:
         """sign sense (r_t - s r_n) <= 0 for the sticking impulse: on the cone's side of that edge (sign = 1) or not."""
@@ -246,7 +245,7 @@ def contact_pieces(problem: LocalProblem, eps: float) -> Iterator[Piece]:
     """
     with flint.ctx.workprec(BITS):
         build = _Build(problem, eps)
-        if not build.planar:
+        if not build.frictional:
             yield _impact(build)
             return
         yield from _sticking(build)

@@ -5,16 +5,16 @@ from __future__ import annotations
 import flint
 import numpy as np
 
+from painleve.asymptotics.ball_arithmetic import BITS, Balls, is_inside
 from painleve.asymptotics.certify.branch_and_bound import Candidate
-from painleve.asymptotics.local import BITS, LocalProblem
+from painleve.asymptotics.local import LocalProblem
 from painleve.asymptotics.member import Member, base_balls, make_member, row_balls
-from painleve.core.codes import ContactMode
+from painleve.asymptotics.search import SLIPS
 
 __all__ = ["candidate_member", "free_member"]
 
 # An optimum is at the boundary of its domain, as a rule: how far it is drawn inside, in units of eps, to be a member.
 SHRINK = (1e-13, 1e-11, 1e-9, 1e-7, 1e-5, 1e-3)
-Balls = list[flint.arb]
 
 
 def free_member(problem: LocalProblem, eps: float) -> Member:
@@ -34,7 +34,7 @@ def candidate_member(problem: LocalProblem, eps: float, candidate: Candidate) ->
     for shrink in SHRINK:
         dq = _configuration(problem, eps, candidate, shrink)
         dv = _velocity(problem, eps, candidate, dq, shrink)
-        if not (_inside(dq, eps) and _inside(dv, eps) and row_balls(problem, dq)[problem.parts.g] >= 0):
+        if not (is_inside(dq, eps) and is_inside(dv, eps) and row_balls(problem, dq)[problem.parts.g] >= 0):
             continue
         try:
             member = make_member(problem, dq, dv)
@@ -82,12 +82,7 @@ def _velocity(problem: LocalProblem, eps: float, candidate: Candidate, dq: Balls
         if piece.lam is None:
             push = flint.arb(eps * shrink / 2.0) / squared.sqrt()
             return [flint.arb((x - push * y).mid()) for x, y in zip(dv, w_n, strict=True)]
-        row = problem.kernels.rows.index("edge_plus" if piece.branch is ContactMode.SLIP_PLUS else "edge_minus")
+        row = problem.kernels.rows.edges[SLIPS[piece.branch]]
         impulse = flint.arb(piece.shift) + flint.arb(piece.unit) * flint.arb(candidate.lam)
         excess = (v_n + impulse * row_balls(problem, dq)[row]) / squared
         return [flint.arb((x - excess * y).mid()) for x, y in zip(dv, w_n, strict=True)]
-
-
-def _inside(x: Balls, eps: float) -> bool:
-    with flint.ctx.workprec(BITS):
-        return bool(sum((y * y for y in x), flint.arb(0)) <= flint.arb(float(eps)) ** 2)

@@ -16,7 +16,8 @@ import flint
 import numpy as np
 import sympy as sp
 
-from painleve.asymptotics.local import BITS, LocalProblem
+from painleve.asymptotics.ball_arithmetic import BITS
+from painleve.asymptotics.local import LocalProblem
 from painleve.asymptotics.member import base_balls
 from painleve.errors import InputError
 from painleve.exact.jets import Jet, jets, monomials

@@ -10,6 +10,7 @@ import numpy as np
 
 from painleve.asymptotics.local import Expansion, LocalProblem
 from painleve.core.ball_maps import cube_to_ball
+from painleve.core.lane import BlockResult
 from painleve.core.lattice import kronecker_block, kronecker_generators, kronecker_shifts
 from painleve.core.reduce import PAIR, POINT
 
@@ -70,15 +71,8 @@ class SpaceBall:
             varying,
             np.full(n, np.inf),
             dv,
-            p.base,
-            p.u,
-            p.direction,
-            p.length,
-            p.impulse,
-            p.multiplier,
-            p.critical_edge,
-            branch,
-            *measures,
+            p.base_state,
+            BlockResult(branch, *measures),
         )
         self.evaluations += n
         return self.distance(*measures), branch

@@ -21,8 +21,7 @@ import numpy as np
 from painleve.asymptotics.space.ball import SpaceBall
 from painleve.core.codes import ContactMode
 from painleve.core.rows import RowParts
-from painleve.core.space.polygon_offset import PolygonBase
-from painleve.mechanics.friction import Polygon
+from painleve.core.sections.conic import ConicBase
 
 __all__ = ["Along", "SpaceChart", "Sticking", "Whole", "charts_of"]
 
@@ -93,7 +92,7 @@ class Along:
 
     def __init__(self, ball: SpaceBall) -> None:
         self.name, self.ball = "along A", ball
-        self.edge = ball.problem.kernels.rows.edge(ball.problem.critical_edge)
+        self.edge = ball.problem.kernels.rows.edges[ball.problem.critical_edge]
         self.across = np.linalg.svd(ball.normal[None, :])[2][1:].T
         slopes = np.abs(ball.problem.gradients)
         slope = ball.problem.gradients[self.edge]
@@ -161,7 +160,7 @@ class Sticking:
         self.name, self.ball = "sticking", ball
         self.bounds = [(-1.0, 1.0)] * (ball.places + ball.dimension)
         p = ball.problem
-        assert not isinstance(p.impulse, PolygonBase | np.ndarray)
+        assert isinstance(p.impulse, ConicBase)
         self.stick = np.array([p.impulse.stick_n, p.impulse.stick_1, p.impulse.stick_2])
         self.across, self.at_end = p.impulse.stick_across, p.impulse.jump_sticks
 
@@ -230,7 +229,7 @@ def charts_of(ball: SpaceBall) -> list[SpaceChart]:
     found: list[SpaceChart] = [Whole(ball)]
     if ball.problem.critical_edge and ball.problem.length > 0.0:
         found += [Along(ball)]
-    if not isinstance(ball.problem.limit.state.scene.contact.section, Polygon):
+    if ball.problem.section.curved:
         found.append(Sticking(ball))
     return found
 

@@ -12,8 +12,9 @@ from __future__ import annotations
 import flint
 import numpy as np
 
+from painleve.asymptotics.ball_arithmetic import is_inside
 from painleve.asymptotics.distance import Attained, Distance
-from painleve.asymptotics.free_member import free_member, is_inside
+from painleve.asymptotics.free_member import free_member
 from painleve.asymptotics.local import Arithmetic, make_local_problem
 from painleve.asymptotics.member import Member, make_member
 from painleve.asymptotics.sample import KINDS, SampleOptions, sample_distance

@@ -28,7 +28,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from painleve.asymptotics.local import LocalProblem, make_local_problem
-from painleve.core.space.offset import SpaceBase
+from painleve.core.sections.conic import ConicBase
 from painleve.errors import InputError
 from painleve.theory.limit_set import LimitSet
 
@@ -52,7 +52,7 @@ def root_rate(limit: LimitSet, isolated: bool) -> Root:
     Raises InputError where none is known: unless gamma = 0 on a disc or an ellipse and the jump ends in slip.
     """
     problem, where = make_local_problem(limit), f"rate: scene {limit.state.scene.name}"
-    if not (limit.critical and isinstance(problem.impulse, SpaceBase)) or problem.impulse.jump_sticks:
+    if not (limit.critical and isinstance(problem.impulse, ConicBase)) or problem.impulse.jump_sticks:
         raise InputError(
             f"{where}: with friction in space C is known only where gamma = 0 on a disc or an ellipse and "
             "the jump ends in slip; sweep the distance over eps for its slope"
@@ -92,7 +92,7 @@ class _RootSearch:
         Y_t = np.stack([base[part] for part in parts.Y_t], axis=1)
         self.a, self.Q_11, self.Q_12, self.jump = a, float(e @ Q @ e), float(e @ Q @ across), problem.multiplier
         self.ray, self.side = Y_n - Y_t @ e, Y_t @ across
-        assert isinstance(problem.impulse, SpaceBase)
+        assert isinstance(problem.impulse, ConicBase)
         self.kappa = -problem.impulse.after_across  # s_0 = -e, so that its perpendicular is -e_perp
 
     def best(self) -> tuple[float, np.ndarray, float]:

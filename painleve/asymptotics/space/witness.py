@@ -15,15 +15,15 @@ from collections.abc import Callable
 
 import flint
 
-from painleve.asymptotics.local import BITS, LocalProblem
+from painleve.asymptotics.ball_arithmetic import BITS, Balls, dot, norm
+from painleve.asymptotics.local import LocalProblem
 from painleve.asymptotics.member import Member, jump_balls, row_balls
-from painleve.mechanics.friction import Polygon
+from painleve.asymptotics.sections.section import JumpBalls
 
 __all__ = ["path_bound", "path_members"]
 
 REACHES = (2.0, 8.0, 32.0)  # in units of the normal velocity that would give the jump's impulse on the ray
 START = 2.0**-64  # of it
-Balls = list[flint.arb]
 MakeMember = Callable[[LocalProblem, Balls, float], Member | None]
 
 
@@ -47,8 +47,10 @@ def path_bound(problem: LocalProblem, dq: Balls, first: Member, last: Member, re
     with flint.ctx.workprec(BITS):
         before, beyond = _along(problem, first), _length(problem) - _along(problem, last)
         gap = before.max(beyond).max(flint.arb(0))
-        moved = max((_norm(_exact(m)) for m in (first, last)), key=lambda x: x.upper())
-        return float((gap + moved + _off_the_line(problem, dq, reach)).upper()) * (1.0 + 1e-15)
+        moved = max((norm(_exact(m)) for m in (first, last)), key=lambda x: x.upper())
+        jump = JumpBalls(vector=jump_balls(problem), impulse=problem.exact_multiplier, edge=problem.limit.edge)
+        away = problem.section.off_the_line(row_balls(problem, dq), problem.parts, jump, reach)
+        return float((gap + moved + away).upper()) * (1.0 + 1e-15)
 
 
 def _exact(member: Member) -> Balls:
@@ -57,48 +59,9 @@ def _exact(member: Member) -> Balls:
 
 def _along(problem: LocalProblem, member: Member) -> flint.arb:
     with flint.ctx.workprec(BITS):
-        return _dot(member.enclosure, jump_balls(problem)) / _length(problem)
+        return dot(member.enclosure, jump_balls(problem)) / _length(problem)
 
 
 def _length(problem: LocalProblem) -> flint.arb:
     with flint.ctx.workprec(BITS):
-        return _norm(jump_balls(problem))
-
-
-def _off_the_line(problem: LocalProblem, dq: Balls, reach: float) -> flint.arb:
-    """Of S - v from the line through A, for all nu up to `reach` times p times the jump's impulse."""
-    rows, names, parts = row_balls(problem, dq), problem.kernels.rows, problem.parts
-    p = rows[names.edge(problem.limit.edge)]
-    most = flint.arb(reach) * problem.exact_multiplier
-    Y_n, (Y_1, Y_2) = rows[parts.Y_n], [rows[part] for part in parts.Y_t]
-    friction = problem.limit.state.scene.contact.section
-    if isinstance(friction, Polygon):
-        corners = [
-            (rows[names.index(f"s_1_{i}")], rows[names.index(f"s_2_{i}")]) for i in range(1, 1 + len(friction.vertices))
-        ]
-        rays = [_combine((Y_n, 1), (Y_1, x), (Y_2, y)) for x, y in corners]
-        others = [i for i in range(len(rays)) if i != problem.limit.edge - 1]
-        ray = rays[problem.limit.edge - 1]
-        rest = max((most * p * _norm(rays[i]) / rows[names.edge(i + 1)] for i in others), key=lambda x: x.upper())
-    else:
-        b_1, b_2 = rows[parts.b]
-        size = (b_1 * b_1 + b_2 * b_2).sqrt()
-        e_1, e_2 = b_1 / size, b_2 / size
-        ray = _combine((Y_n, 1), (Y_1, -e_1), (Y_2, -e_2))
-        along, across = _norm(_combine((Y_1, e_1), (Y_2, e_2))), _norm(_combine((Y_1, -e_2), (Y_2, e_1)))
-        rest = most * (p * along + ((2 * size + p) * p / 4).sqrt() * across) / size
-    jump = jump_balls(problem)
-    share = _dot(ray, jump) / _dot(jump, jump)
-    return most * _norm([x - share * y for x, y in zip(ray, jump, strict=True)]) + rest
-
-
-def _combine(*terms: tuple[Balls, flint.arb | int]) -> Balls:
-    return [sum((row[j] * factor for row, factor in terms), flint.arb(0)) for j in range(len(terms[0][0]))]
-
-
-def _dot(x: Balls | tuple[flint.arb, ...], y: Balls) -> flint.arb:
-    return sum((a * b for a, b in zip(x, y, strict=True)), flint.arb(0))
-
-
-def _norm(x: Balls) -> flint.arb:
-    return _dot(x, x).nonnegative_part().sqrt()
+        return norm(jump_balls(problem))

@@ -1,5 +1,5 @@
-"""The law with friction in space: on the disc a projection onto a conic, on a polygon onto its edges; and Coulomb's.
+"""The law with friction in space, from numbers: on the disc a projection onto a conic, on a polygon onto its edges.
 
-`conic_law` and `polygon_law` are S from numbers, `law` from a scene's rows, `offset` and `polygon_offset` relative to
-the limit set; `steps` serves the schemes; `coulomb` enumerates the solutions of the law of maximal dissipation.
+`tangent_plane` is where both are, `conic_law` and `polygon_law` are S, `offset` and `from_rows` what both of
+painleve.core.sections have use for; `coulomb` enumerates the solutions of the law of maximal dissipation.
 """

@@ -13,6 +13,7 @@ arc are the points of contact of the tangents from there.
 """
 
 from math import hypot, inf, sqrt
+from typing import NamedTuple
 
 from painleve._jit import jit
 from painleve.core.codes import ContactMode
@@ -20,6 +21,7 @@ from painleve.core.space.quartic import bracketed_root
 from painleve.core.space.tangent_plane import (
     ROUNDING,
     SMALLEST,
+    TangentEnergy,
     is_definite,
     made_definite,
     of_little_friction,
@@ -31,52 +33,70 @@ from painleve.core.space.tangent_plane import (
 FREE, STICK, SLIP = int(ContactMode.FREE), int(ContactMode.STICK), int(ContactMode.SLIP)
 
 
+class VisibleArc(NamedTuple):
+    """The point t of the conic is visible from the sticking impulse where k_0 + 2 k_1 t + k_2 t^2 > 0."""
+
+    k_0: float
+    k_1: float
+    k_2: float
+    discriminant: float
+
+
 @jit
-def disc_impulse(a, p, b_1, b_2, C_11, C_12, C_22, v_n, v_1, v_2):
-    """(r_n, r_1, r_2, branch) of law (7) with the unit disc for a section; no impulse where v_n >= 0.
+def disc_impulse(G, p, v):
+    """(r_n, r_1, r_2, branch) of law (7) with the unit disc for a section, at v = (v_n, v_1, v_2) and W^T M^-1 W = G.
 
     p = a - |b| has the sign of gamma and is taken as given, so that no rounding hides it. Ellipses and discs of any
     radius come as the unit disc: E'b, E'CE and E'v_t stand for b, C and v_t where the section is E times the disc.
+    There is no impulse where v_n >= 0.
     """
+    v_n, v_1, v_2 = v
     if v_n >= 0.0:
         return 0.0, 0.0, 0.0, FREE
     scale, back = scales(v_n, v_1, v_2)
     nu = -v_n * scale
-    Q_11, Q_12, Q_22, w_1, w_2 = tangent_energy(a, b_1, b_2, C_11, C_12, C_22, nu, v_1 * scale, v_2 * scale)
-    if max(Q_11, Q_22) < SMALLEST:
-        Q_11, Q_12, Q_22, w_1, w_2 = of_little_friction(Q_11, Q_12, Q_22, w_1, w_2)
-    if not is_definite(Q_11, Q_12, Q_22):
-        Q_11, Q_12, Q_22, w_1, w_2 = made_definite(Q_11, Q_12, Q_22, w_1, w_2, C_11, C_22)
-        if Q_11 == 0.0 and w_1 == 0.0 and w_2 == 0.0:  # the section is a point: there is no friction
-            return -v_n / a, 0.0, 0.0, SLIP
-    X, Y, W = sticking_point(Q_11, Q_12, Q_22, w_1, w_2)
-    reach, along = a * sqrt(X * X + Y * Y), b_1 * X + b_2 * Y
+    energy = tangent_energy(G, nu, v_1 * scale, v_2 * scale)
+    if max(energy.Q_11, energy.Q_22) < SMALLEST:
+        energy = of_little_friction(energy)
+    if not is_definite(energy):
+        energy = made_definite(energy, G.C_11, G.C_22)
+        if energy.Q_11 == 0.0 and energy.w_1 == 0.0 and energy.w_2 == 0.0:  # the section is a point: no friction
+            return -v_n / G.a, 0.0, 0.0, SLIP
+    X, Y, W = sticking_point(energy)
+    reach, along = G.a * sqrt(X * X + Y * Y), G.b_1 * X + G.b_2 * Y
     if reach + along + ROUNDING * (reach + abs(along)) < nu * W:
         r_1, r_2 = X / W, Y / W
-        r_n, branch = (nu - b_1 * r_1 - b_2 * r_2) / a, STICK
+        r_n, branch = (nu - G.b_1 * r_1 - G.b_2 * r_2) / G.a, STICK
     else:
-        r_n, r_1, r_2, branch = nearest(a, p, b_1, b_2, Q_11, Q_12, Q_22, w_1, w_2, nu, X, Y, W)
+        r_n, r_1, r_2, branch = nearest(G, p, energy, nu, (X, Y, W))
     return r_n * back, r_1 * back, r_2 * back, branch
 
 
 @jit
-def nearest(a, p, b_1, b_2, Q_11, Q_12, Q_22, w_1, w_2, nu, X, Y, W):
-    """(r_n, r_1, r_2, branch) of the point of the region nearest to (X, Y)/W: turned into the frame of b and back."""
-    beta = hypot(b_1, b_2)
+def nearest(G, p, energy, nu, point):
+    """(r_n, r_1, r_2, branch) of the point of the region nearest to the sticking impulse, in homogeneous coordinates:
+    turned into the frame of b and back."""
+    Q_11, Q_12, Q_22, w_1, w_2 = energy
+    X, Y, W = point
+    beta = hypot(G.b_1, G.b_2)
     e_1, e_2 = 1.0, 0.0
     if beta > 0.0:
-        e_1, e_2 = b_1 / beta, b_2 / beta
-    q_11 = e_1 * (e_1 * Q_11 + e_2 * Q_12) + e_2 * (e_1 * Q_12 + e_2 * Q_22)
-    q_12 = e_1 * (e_1 * Q_12 + e_2 * Q_22) - e_2 * (e_1 * Q_11 + e_2 * Q_12)
-    q_22 = e_1 * (e_1 * Q_22 - e_2 * Q_12) - e_2 * (e_1 * Q_12 - e_2 * Q_11)
-    x, y = e_1 * X + e_2 * Y, e_1 * Y - e_2 * X
-    r_n, x, y, branch = aligned(a, p, beta, q_11, q_12, q_22, e_1 * w_1 + e_2 * w_2, e_1 * w_2 - e_2 * w_1, nu, x, y, W)
+        e_1, e_2 = G.b_1 / beta, G.b_2 / beta
+    turned = TangentEnergy(
+        e_1 * (e_1 * Q_11 + e_2 * Q_12) + e_2 * (e_1 * Q_12 + e_2 * Q_22),
+        e_1 * (e_1 * Q_12 + e_2 * Q_22) - e_2 * (e_1 * Q_11 + e_2 * Q_12),
+        e_1 * (e_1 * Q_22 - e_2 * Q_12) - e_2 * (e_1 * Q_12 - e_2 * Q_11),
+        e_1 * w_1 + e_2 * w_2,
+        e_1 * w_2 - e_2 * w_1,
+    )
+    r_n, x, y, branch = aligned(G.a, p, beta, turned, nu, (e_1 * X + e_2 * Y, e_1 * Y - e_2 * X, W))
     return r_n, e_1 * x - e_2 * y, e_1 * y + e_2 * x, branch
 
 
 @jit
-def aligned(a, p, beta, q_11, q_12, q_22, w_1, w_2, nu, X, Y, W):
+def aligned(a, p, beta, energy, nu, point):
     """`nearest` where b = (beta, 0)."""
+    X, Y, W = point
     A, R = a + beta, hypot(X, Y)
     # R + X and R - X without cancellation
     with_b = R + X if X > 0.0 else (Y / (R - X)) * Y if R > 0.0 else 0.0
@@ -84,10 +104,9 @@ def aligned(a, p, beta, q_11, q_12, q_22, w_1, w_2, nu, X, Y, W):
     excess = p * R + beta * with_b - nu * W
     if excess <= 0.0:
         return (nu - beta * (X / W)) / a, X / W, Y / W, STICK
-    # the point t of the conic is visible where k_0 + 2 k_1 t + k_2 t^2 > 0
     k_0, k_1, k_2 = A * X - nu * W, a * Y, -(p * X + nu * W)
     discriminant = excess * (p * R + beta * against_b + nu * W)
-    f_0, f_4 = A * (nu * q_12 + A * w_2), p * (nu * q_12 - p * w_2)
+    f_0, f_4 = A * (nu * energy.Q_12 + A * energy.w_2), p * (nu * energy.Q_12 - p * energy.w_2)
     # Neither t = 0 and t = inf, the points of the axis, are both visible, nor is the projection beyond a visible one.
     if k_0 > 0.0:
         upper = f_0 <= 0.0
@@ -96,19 +115,22 @@ def aligned(a, p, beta, q_11, q_12, q_22, w_1, w_2, nu, X, Y, W):
     else:
         upper = Y >= 0.0
     side = 1.0 if upper else -1.0
-    c, s, D = half_angle(a, p, A, q_11, side * q_12, q_22, w_1, side * w_2, nu, k_0, side * k_1, k_2, discriminant)
+    mirrored = TangentEnergy(energy.Q_11, side * energy.Q_12, energy.Q_22, energy.w_1, side * energy.w_2)
+    c, s, D = half_angle(a, p, A, mirrored, nu, VisibleArc(k_0, side * k_1, k_2, discriminant))
     multiple = nu / D
     return multiple * (c * c + s * s), multiple * ((c - s) * (c + s)), side * (multiple * (2.0 * c * s)), SLIP
 
 
 @jit
-def likely_point(a, p, A, q_11, q_12, q_22, k_0, k_1, k_2, discriminant):
+def likely_point(a, p, A, energy, arc):
     """A point (c, s) of the visible arc near the projection, and (0, 0) where no two tangents tell one.
 
     With h = h_A + z h_B, where h_A and h_B are the points of contact, the vector from the sticking impulse to the
     conic is (d_A + z^2 d_B)/(D_AA + 2 z D_AB + z^2 D_BB): the rational quadratic Bezier curve whose control points are
     the two points and the sticking impulse. This is one Newton step from the z at which both terms are equally long.
     """
+    q_11, q_12, q_22, _, _ = energy
+    k_0, k_1, k_2, discriminant = arc
     if not discriminant > 0.0:
         return 0.0, 0.0
     sense = 1.0 if k_1 >= 0.0 else -1.0
@@ -141,8 +163,9 @@ def likely_point(a, p, A, q_11, q_12, q_22, k_0, k_1, k_2, discriminant):
 
 
 @jit
-def visible_ends(k_0, k_1, k_2, discriminant):
+def visible_ends(arc):
     """The ends (t, t) of the visible arc among t >= 0, a little outside: rounding must not lose the root."""
+    k_0, k_1, k_2, discriminant = arc
     root = sqrt(max(discriminant, 0.0)) * (1.0 + 1e-9)
     low, high = 0.0, inf
     if k_0 <= 0.0:
@@ -156,25 +179,26 @@ def visible_ends(k_0, k_1, k_2, discriminant):
 
 
 @jit
-def half_angle(a, p, A, q_11, q_12, q_22, w_1, w_2, nu, k_0, k_1, k_2, discriminant):
+def half_angle(a, p, A, energy, nu, arc):
     """(c, s, A c^2 + p s^2) of the projection, which has t = s/c >= 0, in the chart that represents it best."""
-    low, high = visible_ends(k_0, k_1, k_2, discriminant)
+    q_11, q_12, q_22, w_1, w_2 = energy
+    low, high = visible_ends(arc)
     f_0 = A * (nu * q_12 + A * w_2)
     f_1 = 2.0 * (A * (nu * q_22 - a * w_1) - a * (nu * q_11))
     f_2 = -6.0 * a * (nu * q_12)
     f_3 = 2.0 * (a * (nu * q_11 - p * w_1) - p * (nu * q_22))
     f_4 = p * (nu * q_12 - p * w_2)
-    if k_0 > 0.0 and f_0 == 0.0:
+    if arc.k_0 > 0.0 and f_0 == 0.0:
         return 1.0, 0.0, A
-    if p > 0.0 and k_2 > 0.0 and f_4 == 0.0:
+    if p > 0.0 and arc.k_2 > 0.0 and f_4 == 0.0:
         return 0.0, 1.0, p
-    c, s = likely_point(a, p, A, q_11, q_12, q_22, k_0, k_1, k_2, discriminant)
+    c, s = likely_point(a, p, A, energy, arc)
     if p < 0.0:
         asymptote = sqrt(A / -p)
         high, third = min(high, asymptote), asymptote / 3.0
         if high > third and (low >= third or f_0 + third * (f_1 + third * (f_2 + third * (f_3 + third * f_4))) < 0.0):
             likely = s / (c * asymptote) if c != 0.0 else 1.0
-            return near_asymptote(a, -p, A, q_11, q_12, q_22, w_1, w_2, nu, low / asymptote, high / asymptote, likely)
+            return near_asymptote(a, -p, A, energy, nu, low / asymptote, high / asymptote, likely)
         high = min(high, third)
     if high <= 1.0 or (low < 1.0 and f_0 + f_1 + f_2 + f_3 + f_4 >= 0.0):
         t = bracketed_root(f_0, f_1, f_2, f_3, f_4, low, min(high, 1.0), s / c if c != 0.0 else 0.0)
@@ -184,11 +208,12 @@ def half_angle(a, p, A, q_11, q_12, q_22, w_1, w_2, nu, k_0, k_1, k_2, discrimin
 
 
 @jit
-def near_asymptote(a, P, A, q_11, q_12, q_22, w_1, w_2, nu, low, high, likely):
+def near_asymptote(a, P, A, energy, nu, low, high, likely):
     """(c, s, A c^2 - P s^2), P = -p > 0, where c = m (1 + x), s = 1 - x and m = sqrt(P/A): the asymptote is x = 0.
 
     The ends of the bracket and the likely place of the root come as t over that of the asymptote.
     """
+    q_11, q_12, q_22, w_1, w_2 = energy
     m = sqrt(P / A)
     g_0, g_1, g_2 = P * m * q_12, 2.0 * P * (q_22 - a * q_11 / A), -6.0 * a * m * q_12
     g_3, g_4 = 2.0 * (a * q_11 + P * q_22), -A * m * q_12

@@ -31,12 +31,15 @@ COLUMNS = 7
 
 
 @jit
-def coulomb_disc(a, p, b_1, b_2, C_11, C_12, C_22, v_n, v_1, v_2, found):
-    """Write the solutions into `found` (MOST_SOLUTIONS x COLUMNS) and return how many there are.
+def coulomb_disc(G, p, v, found):
+    """Write the solutions at v = (v_n, v_1, v_2) and W^T M^-1 W = G into `found` (MOST_SOLUTIONS x COLUMNS), and return
+    how many there are.
 
     p = a - |b| is a number of its own because its sign decides. Where v_n = 0 = p a whole interval of impulses may
     solve the problem; of such a family only the ends are listed.
     """
+    a, b_1, b_2, C_11, C_12, C_22 = G
+    v_n, v_1, v_2 = v
     count = 0
     if v_n >= 0.0:
         found[count] = np.array((FREE, 0.0, 0.0, 0.0, v_n, v_1, v_2))

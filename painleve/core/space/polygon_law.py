@@ -16,41 +16,48 @@ FREE, STICK, SLIP = int(ContactMode.FREE), int(ContactMode.STICK), int(ContactMo
 
 
 @jit
-def polygon_impulse(a, b_1, b_2, C_11, C_12, C_22, vertices, p, v_n, v_1, v_2):
-    """(r_n, r_1, r_2, branch) of law (7) with a polygon for a section; no impulse where v_n >= 0.
+def polygon_impulse(G, vertices, p, v):
+    """(r_n, r_1, r_2, branch) of law (7) with a polygon for a section, at v = (v_n, v_1, v_2) and W^T M^-1 W = G; no
+    impulse where v_n >= 0.
 
     `vertices` (n, 2), counterclockwise with 0 inside or on the edge; a segment and a point are polygons too. `p` (n,):
     a + b.s_i, taken as given, so that no rounding hides a sign.
     """
+    v_n, v_1, v_2 = v
     if v_n >= 0.0:
         return 0.0, 0.0, 0.0, FREE
     scale, back = scales(v_n, v_1, v_2)
     nu = -v_n * scale
-    Q_11, Q_12, Q_22, w_1, w_2 = tangent_energy(a, b_1, b_2, C_11, C_12, C_22, nu, v_1 * scale, v_2 * scale)
-    if not is_definite(Q_11, Q_12, Q_22):
-        Q_11, Q_12, Q_22, w_1, w_2 = made_definite(Q_11, Q_12, Q_22, w_1, w_2, C_11, C_22)
-    X, Y, W = sticking_point(Q_11, Q_12, Q_22, w_1, w_2)
-    if sticks(vertices, p, nu, X, Y, W):
+    energy = tangent_energy(G, nu, v_1 * scale, v_2 * scale)
+    if not is_definite(energy):
+        energy = made_definite(energy, G.C_11, G.C_22)
+    point = sticking_point(energy)
+    if sticks(vertices, p, nu, point):
+        X, Y, W = point
         r_1, r_2 = X / W, Y / W
-        r_n, branch = (nu - b_1 * r_1 - b_2 * r_2) / a, STICK
+        r_n, branch = (nu - G.b_1 * r_1 - G.b_2 * r_2) / G.a, STICK
     else:
-        r_n, r_1, r_2, branch = nearest_on_boundary(vertices, p, Q_11, Q_12, Q_22, w_1, w_2, nu, X, Y, W)
+        r_n, r_1, r_2, branch = nearest_on_boundary(vertices, p, energy, nu, point)
     return r_n * back, r_1 * back, r_2 * back, branch
 
 
 @jit
-def depth(vertices, p, i, j, nu, X, Y, W):
-    """W times the determinant of (p_i, s_i), (p_j, s_j), (nu, r): positive inside the edge from s_i to s_j."""
+def depth(vertices, p, i, j, nu, point):
+    """W times the determinant of (p_i, s_i), (p_j, s_j), (nu, r): positive inside the edge from s_i to s_j.
+
+    r = (X, Y)/W, `point` = (X, Y, W).
+    """
+    X, Y, W = point
     s_1, s_2, z_1, z_2 = vertices[i, 0], vertices[i, 1], vertices[j, 0], vertices[j, 1]
     return nu * W * (s_1 * z_2 - s_2 * z_1) + p[i] * (z_1 * Y - z_2 * X) - p[j] * (s_1 * Y - s_2 * X)
 
 
 @jit
-def sticks(vertices, p, nu, X, Y, W):
+def sticks(vertices, p, nu, point):
     """Whether the sticking impulse is in the cone; a section without area is left to the search on its edges."""
     n, inner = len(p), 0
     for i in range(n):
-        inside = depth(vertices, p, i, (i + 1) % n, nu, X, Y, W)
+        inside = depth(vertices, p, i, (i + 1) % n, nu, point)
         if inside < 0.0:
             return False
         if inside > 0.0:
@@ -59,22 +66,23 @@ def sticks(vertices, p, nu, X, Y, W):
 
 
 @jit
-def nearest_on_boundary(vertices, p, Q_11, Q_12, Q_22, w_1, w_2, nu, X, Y, W):
+def nearest_on_boundary(vertices, p, energy, nu, point):
     """(r_n, r_1, r_2, branch) of the point of least energy on the visible edges, or where there are none on all."""
-    i, j, x_i, x_j, branch = nearest_edge(vertices, p, Q_11, Q_12, Q_22, w_1, w_2, nu, X, Y, W)
+    i, j, x_i, x_j, branch = nearest_edge(vertices, p, energy, nu, point)
     r_1 = x_i * vertices[i, 0] + x_j * vertices[j, 0]
     return x_i + x_j, r_1, x_i * vertices[i, 1] + x_j * vertices[j, 1], branch
 
 
 @jit
-def nearest_edge(vertices, p, Q_11, Q_12, Q_22, w_1, w_2, nu, X, Y, W):
+def nearest_edge(vertices, p, energy, nu, point):
     """(i, j, x_i, x_j, branch): the same point as x_i (1, s_i) + x_j (1, s_j)."""
+    Q_11, Q_12, Q_22, w_1, w_2 = energy
     n = len(p)
     best_1, best_2, found, branch = 0.0, 0.0, False, SLIP
     best_i, best_j, best_x_i, best_x_j = 0, 0, 0.0, 0.0
     for k in range(n):
         i, j = k, (k + 1) % n
-        outside = depth(vertices, p, i, j, nu, X, Y, W)
+        outside = depth(vertices, p, i, j, nu, point)
         if p[j] > p[i]:
             i, j = j, i
         if outside > 0.0 or p[i] <= 0.0:

@@ -8,6 +8,7 @@ from painleve._jit import jit
 from painleve.core.codes import ContactMode
 from painleve.core.space.conic_law import disc_impulse
 from painleve.core.space.coulomb import COLUMNS, MOST_SOLUTIONS, coulomb_disc
+from painleve.core.space.tangent_plane import Delassus
 
 STICK = int(ContactMode.STICK)
 
@@ -27,16 +28,16 @@ def compare_laws(G, Y, v_n, slips, frictions, counts, sticks, apart):
     projected = np.zeros(3)
     for i in range(len(frictions)):
         mu = frictions[i]
-        a, b_1, b_2 = G[0, 0], mu * G[0, 1], mu * G[0, 2]
-        C_11, C_12, C_22 = mu * mu * G[1, 1], mu * mu * G[1, 2], mu * mu * G[2, 2]
-        p = a - math.hypot(b_1, b_2)
+        square = mu * mu
+        unit = Delassus(G[0, 0], mu * G[0, 1], mu * G[0, 2], square * G[1, 1], square * G[1, 2], square * G[2, 2])
+        p = unit.a - math.hypot(unit.b_1, unit.b_2)
         for j in range(len(slips)):
             v_1, v_2 = mu * slips[j, 0], mu * slips[j, 1]
-            counts[i, j] = coulomb_disc(a, p, b_1, b_2, C_11, C_12, C_22, v_n, v_1, v_2, found)
+            counts[i, j] = coulomb_disc(unit, p, (v_n, v_1, v_2), found)
             projected[:] = 0.0
             if v_n < 0.0 or (v_n == 0.0 and p < 0.0):
                 size = math.hypot(slips[j, 0], slips[j, 1])
-                r_n, r_1, r_2, _ = disc_impulse(a, p, b_1, b_2, C_11, C_12, C_22, min(v_n, -TOUCH * size), v_1, v_2)
+                r_n, r_1, r_2, _ = disc_impulse(unit, p, (min(v_n, -TOUCH * size), v_1, v_2))
                 projected[0], projected[1], projected[2] = r_n, mu * r_1, mu * r_2
             sticks[i, j], nearest, farthest = 0, np.inf, 0.0
             for row in found[: counts[i, j]]:

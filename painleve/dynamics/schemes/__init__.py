@@ -31,8 +31,9 @@ def load_scheme(name: str) -> Scheme:
 def scheme_for(scene: Scene, name: str) -> Scheme:
     """The scheme of that name for a scene. Raises InputError for an unknown one and one that cannot step the scene."""
     scheme = load_scheme(name)
-    if scene.friction_dimension > scheme.friction_dimension:
-        able = [n for n in SCHEME_NAMES if load_scheme(n).friction_dimension >= scene.friction_dimension]
+    k = scene.contact.section.dimension
+    if k > scheme.friction_dimension:
+        able = [n for n in SCHEME_NAMES if load_scheme(n).friction_dimension >= k]
         raise InputError(
             f"scheme: {name} does not step friction in space, which scene {scene.name} has; "
             f"use one of {', '.join(able)}"

@@ -32,7 +32,7 @@ MOST_ARCS = 100_000
 def spring_force(point: ContactPoint, options: Mapping[str, float]) -> float:
     """k g + c dg/dt, what the spring and the damper of a closed contact exert along w_n."""
     stiffness = options["stiffness"]
-    return stiffness * point.rows[0] - 2.0 * options["damping_ratio"] * math.sqrt(stiffness / point.a) * point.v_n
+    return stiffness * point.g - 2.0 * options["damping_ratio"] * math.sqrt(stiffness / point.a) * point.v_n
 
 
 def contact_force(point: ContactPoint, options: Mapping[str, float]) -> tuple[float, float]:
@@ -60,7 +60,7 @@ class _CompliantRun:
     def closure(self, t: float, y: np.ndarray) -> float:
         """Positive where the contact is closed: it penetrates, and it pushes."""
         point = self.point(t, y)
-        return min(self.options["stiffness"] * point.rows[0], spring_force(point, self.options))
+        return min(self.options["stiffness"] * point.g, spring_force(point, self.options))
 
     def rate(self, t: float, y: np.ndarray) -> np.ndarray:
         point = self.point(t, y)

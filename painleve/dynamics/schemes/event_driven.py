@@ -15,7 +15,6 @@ from scipy.integrate import DOP853
 
 from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Change, Ending
-from painleve.core.steps import contact_problem
 from painleve.dynamics.arc import ArcPoint, Dense, Event, follow
 from painleve.dynamics.grid import TimeGrid
 from painleve.dynamics.modes import ContactPoint, Mode, closed_modes
@@ -59,7 +58,7 @@ class _EventDrivenRun:
     def go(self) -> Trajectory:
         ending, detail = Ending.REACHED_END, ""
         try:
-            if self.start.rows[0] >= -self.start.rounding:
+            if self.start.g >= -self.start.rounding:
                 self.mode = self.after_contact()
             while self.t < self.grid.t[-1]:
                 if self.events > MOST_EVENTS:
@@ -130,8 +129,8 @@ class _EventDrivenRun:
         if mode is Mode.FREE:
             # A tip that leaves the contact may stand above g = 0 by the drift of the arcs before: it meets the floor
             # again where it left it. A test of g = 0 would never see it come back.
-            level = max(0.0, self.point(self.t, self.y).rows[0])
-            return {Event(lambda t, y: level - self.point(t, y).rows[0]): self.after_contact}
+            level = max(0.0, self.point(self.t, self.y).g)
+            return {Event(lambda t, y: level - self.point(t, y).g): self.after_contact}
         force: dict[Event, Callable[[], Mode]] = {Event(lambda t, y: self.point(t, y).force(mode)[0]): self.lift_off}
         if mode is Mode.FRICTIONLESS:
             return force
@@ -191,12 +190,12 @@ class _EventDrivenRun:
 
     def impact(self, point: ContactPoint) -> int:
         """u+ = S(q, u-); returns the sign of the slip that is left."""
-        normal, tangential, code = contact_problem(point.rows, point.d, point.planar, point.v_n, point.v_t, 0.0)
+        normal, tangential, branch = point.impact()
         self.push(normal, tangential)
         self.place.y[2 * self.d :] += normal, tangential
         change = Change.FRICTIONAL_IMPACT if point.planar else Change.IMPACT
-        self.recorder.add(np.array([self.t]), self.y[None, :], np.array([code]), change)
-        return {ContactMode.SLIP_PLUS: -1, ContactMode.SLIP_MINUS: 1}.get(ContactMode(code), 0)
+        self.recorder.add(np.array([self.t]), self.y[None, :], np.array([branch]), change)
+        return {ContactMode.SLIP_PLUS: -1, ContactMode.SLIP_MINUS: 1}.get(branch, 0)
 
     def choose(self, slip: int) -> Mode:
         """The one mode that solves the contact problem. Raises _Stop where there is none, or more than one."""

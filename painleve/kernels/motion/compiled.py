@@ -9,9 +9,8 @@ from pathlib import Path
 
 from painleve.core.stepping import Step
 from painleve.kernels.files import load_generated
-from painleve.kernels.motion.rows import motion_rows
+from painleve.kernels.motion.rows import MotionRows, motion_rows
 from painleve.kernels.motion.source import motion_source
-from painleve.kernels.rows import Rows
 from painleve.mechanics.derive import Derivation, derive
 from painleve.mechanics.scene import Scene
 
@@ -23,7 +22,7 @@ class Motion:
     """A scene's compiled motion (painleve.kernels.motion.source) and the digest that names its source."""
 
     derivation: Derivation
-    rows: Rows
+    rows: MotionRows
     digest: str
     path: Path
     motion_at: Callable[..., tuple[tuple[float, ...], tuple[float, ...]]]
@@ -39,11 +38,6 @@ class Motion:
     @property
     def scene(self) -> Scene:
         return self.derivation.scene
-
-    @property
-    def planar(self) -> bool:
-        """Whether the contact has friction, in the plane."""
-        return self.scene.friction_dimension == 1
 
 
 @lru_cache(maxsize=64)

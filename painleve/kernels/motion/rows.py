@@ -7,28 +7,44 @@ scene's own tangents H, which cannot be found from H E where a coefficient of fr
 
 from __future__ import annotations
 
-from dataclasses import replace
-
-import sympy as sp
+from dataclasses import dataclass
 
 from painleve.kernels.rows import Rows, rows_of
+from painleve.kernels.sections.listed import kernels_of
 from painleve.mechanics.derive import Derivation
-from painleve.mechanics.friction import Polygon
 
-__all__ = ["motion_rows"]
+__all__ = ["MotionRows", "motion_rows"]
 
 
-def motion_rows(derivation: Derivation) -> Rows:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MotionRows(Rows):
+    """`directions` and `responses` are H and M^-1 H in the scene's own tangents, one tangent after the other; `map` is
+    E, row by row, where the tangents of the law are others, else empty."""
+
+    directions: tuple[slice, ...]
+    responses: tuple[slice, ...]
+    map: slice
+
+
+def motion_rows(derivation: Derivation) -> MotionRows:
     """The rows of a scene's motion in their fixed order; `varying` tells of those of the law alone."""
     rows, scene = rows_of(derivation), derivation.scene
-    if scene.friction_dimension < 2:
-        return rows
-    E = sp.eye(2) if isinstance(scene.friction, Polygon) else scene.friction.map  # type: ignore[union-attr]
-    axes = [c.name for c in scene.coordinates]
-    names = [f"{what}_{k}_{x}" for what in ("tangent", "response") for k in (1, 2) for x in axes]
-    columns = [m[:, k] for m in (scene.tangents, derivation.tangent_response) for k in range(2)]
-    return replace(
-        rows,
-        names=(*rows.names, *names, "E_11", "E_12", "E_21", "E_22"),
-        expressions=(*rows.expressions, *(x for column in columns for x in column), *E),
+    own, end = kernels_of(scene.contact).own_tangents(derivation), len(rows.names)
+    if own is None:
+        at = rows.parts
+        return MotionRows(**vars(rows), directions=at.H, responses=at.Y_t, map=slice(end, end))
+    H, Y, E = own
+    axes, k, d = [c.name for c in scene.coordinates], H.cols, scene.dimension
+    names = [f"{what}_{j + 1}_{x}" for what in ("tangent", "response") for j in range(k) for x in axes]
+    names += [f"E_{i + 1}{j + 1}" for i in range(k) for j in range(k)]
+    columns = [slice(end + j * d, end + (j + 1) * d) for j in range(2 * k)]
+    return MotionRows(
+        names=(*rows.names, *names),
+        expressions=(*rows.expressions, *(x for m in (H, Y) for j in range(k) for x in m[:, j]), *E),
+        parts=rows.parts,
+        edges=rows.edges,
+        varying=rows.varying,
+        directions=tuple(columns[:k]),
+        responses=tuple(columns[k:]),
+        map=slice(end + 2 * k * d, end + 2 * k * d + k * k),
     )

@@ -7,35 +7,22 @@ templates define: `step`, `run`, `run_members`, `tabulate`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from types import ModuleType
 
 import sympy as sp
 
 from painleve.kernels.motion import contact, loops, tuples
-from painleve.kernels.motion.schemes import (
-    anitescu_potra,
-    contact_dynamics,
-    in_plane,
-    in_space,
-    moreau_jean,
-    schatzman_paoli,
-    stewart_trinkle,
-)
-from painleve.kernels.motion.sections import conic, none, polygon, segment
+from painleve.kernels.motion.rows import MotionRows
 from painleve.kernels.printing import assignments, indent, renamed, used
-from painleve.kernels.rows import Rows
+from painleve.kernels.sections.listed import kernels_of
 from painleve.kernels.templates import write_out
-from painleve.mechanics.friction import Polygon
 from painleve.mechanics.scene import Scene
 
 __all__ = ["motion_source"]
 
 PACKAGE = "painleve.kernels.motion"
-PLANAR_SCHEMES = (contact_dynamics, moreau_jean, stewart_trinkle, anitescu_potra, schatzman_paoli, in_plane)
-SPACE_SCHEMES = (contact_dynamics, moreau_jean, in_space)
 
 
-def motion_source(scene: Scene, rows: Rows) -> str:
+def motion_source(scene: Scene, rows: MotionRows) -> str:
     """The source text of a scene's motion kernels; `rows` as painleve.kernels.motion.rows gives them."""
     M, f = scene.inertia, scene.force
     acceleration = M.adjugate() * f / M.det(method="berkowitz")
@@ -46,29 +33,20 @@ def motion_source(scene: Scene, rows: Rows) -> str:
         _function(scene, "force_at", "t, q, u, p", [list(f)]),
         _function(scene, "drift_at", "q, u, p", [_drifts(scene)]),
     ]
-    section, numbers = _section(scene, rows)
-    schemes = PLANAR_SCHEMES if scene.friction_dimension < 2 else SPACE_SCHEMES
-    constants = {"D": scene.dimension, "ROWS": len(rows.names), **numbers}
+    section = kernels_of(scene.contact)
+    constants = section.motion_constants({name: i for i, name in enumerate(rows.names)})
+    constants |= {"D": scene.dimension, "ROWS": len(rows.names)}
+    templates = [tuples, section.motion_template, contact, *section.scheme_templates, loops]
     head = f'"""Motion of the scene {scene.name}, written by painleve from its derivation; edits are lost.\n\n'
     head += f'Rows: {", ".join(rows.names)}\n"""\n\nimport math\n\n'
-    return head + write_out(PACKAGE, [tuples, section, contact, *schemes, loops], constants, functions)
-
-
-def _section(scene: Scene, rows: Rows) -> tuple[ModuleType, dict[str, int]]:
-    """The template of the friction section, and its constants."""
-    if scene.friction_dimension < 2:
-        return (none if scene.friction is None else segment), {}
-    if isinstance(scene.friction, Polygon):
-        return polygon, {"VERTICES": len(scene.friction.vertices)}
-    return conic, {"SECTION": rows.index("E_11")}
+    return head + write_out(PACKAGE, templates, constants, functions)
 
 
 def _drifts(scene: Scene) -> list[sp.Expr]:
     """(dW/dt)^T u, in space of the normal alone: the contact accelerations are W^T du/dt and these."""
-    u = sp.Matrix(scene.u)
-    columns = [sp.Matrix([-sp.diff(scene.constraint, x) for x in scene.q])]
-    if scene.friction_dimension < 2:
-        columns.append(scene.tangents if scene.friction is not None else sp.zeros(scene.dimension, 1))
+    u, turning = sp.Matrix(scene.u), kernels_of(scene.contact).drifting(scene.contact)
+    columns = [sp.Matrix([-sp.diff(scene.contact.constraint, x) for x in scene.q])]
+    columns += [turning[:, j] for j in range(turning.cols)]
     return [(u.T * column.jacobian(scene.q) * u)[0, 0] for column in columns]
 
 

@@ -136,9 +136,8 @@ def _quantities(scene: Scene, stated: Mapping[str, Unit]) -> Iterator[_Quantity]
     for name, rule in scene.contact_parameters.items():
         wanted, words = stated[f"parameter {name}"], f"the parameter {name}"
         yield _Quantity(what=f"contact parameter {name}", expression=rule, wanted=wanted, words=words, of=keys)
-    if scene.friction is not None:
-        for x in scene.friction.expressions:
-            yield _Quantity(what=f"friction {str(x)[:40]}", expression=x, wanted=PURE, words="a pure number", of=known)
+    for x in scene.contact.section.expressions:
+        yield _Quantity(what=f"friction {str(x)[:40]}", expression=x, wanted=PURE, words="a pure number", of=known)
     yield from _defaults(scene, stated)
     if scene.outline is not None:
         points = [x for point in scene.outline.points for x in point]
@@ -150,9 +149,10 @@ def _quantities(scene: Scene, stated: Mapping[str, Unit]) -> Iterator[_Quantity]
 def _mechanics(scene: Scene, rate: Mapping[str, Unit], known: Mapping[sp.Symbol, Unit]) -> Iterator[_Quantity]:
     """Height, kinetic energy, forces and tangential displacements."""
     metre, joule = read_unit("m"), read_unit("J")
-    length = _first_unit(scene.constraint, known, metre)
+    contact = scene.contact
+    length = _first_unit(contact.constraint, known, metre)
     energy = _energy(scene, rate, known, joule)
-    yield _Quantity(what="height g", expression=scene.constraint, wanted=length, words="a length", of=known)
+    yield _Quantity(what="height g", expression=contact.constraint, wanted=length, words="a length", of=known)
     for i, c in enumerate(scene.coordinates):
         for j, other in enumerate(scene.coordinates[: i + 1]):
             if scene.inertia[i, j] != 0:
@@ -169,11 +169,11 @@ def _mechanics(scene: Scene, rate: Mapping[str, Unit], known: Mapping[sp.Symbol,
         wanted = energy.times(known[c.symbol], Fraction(-1))
         words = f"the force of {c.name}, an energy over {c.unit},"
         yield _Quantity(what=f"force of {c.name}", expression=scene.force[i], wanted=wanted, words=words, of=known)
-        for k in range(scene.friction_dimension):
+        for k in range(contact.tangents.cols):
             wanted = length.times(known[c.symbol], Fraction(-1))
             words = f"a length over {c.unit}"
             what = f"tangential displacement {k + 1} with {c.name}"
-            yield _Quantity(what=what, expression=scene.tangents[i, k], wanted=wanted, words=words, of=known)
+            yield _Quantity(what=what, expression=contact.tangents[i, k], wanted=wanted, words=words, of=known)
 
 
 def _places(

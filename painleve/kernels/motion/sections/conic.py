@@ -6,7 +6,7 @@ scene's own tangents, r_t = E r' with the section E times the disc.
 
 from painleve._jit import jit
 from painleve.core.rows import row_layout
-from painleve.core.space import steps
+from painleve.core.sections import conic as section
 from painleve.kernels.motion.sample import D
 
 SECTION = 0  # the first row of E, row by row
@@ -15,13 +15,12 @@ NO_IMPULSE = (0.0, 0.0, 0.0)
 
 @jit
 def contact_velocity(rows, v):
-    return steps.contact_velocity(rows, D, v)
+    return section.contact_velocity(rows, D, v)
 
 
 @jit
 def impulse(rows, contact, bias):
-    r_n, r_1, r_2, branch = steps.conic_problem(rows, D, contact[0] + bias, contact[1], contact[2])
-    return (r_n, r_1, r_2), branch
+    return section.impulse(rows, D, contact, bias)
 
 
 @jit
@@ -41,6 +40,4 @@ def store_impulse(x, i, rows, r):
 
 @jit
 def kind_of_change(step, free, since, speed):
-    contact = step.contact
-    edge = steps.conic_edge(step.rows, D, contact[1], contact[2])
-    return steps.kind_of_change(step.rows, D, contact[0], edge, step.impulse, step.branch, free, since, speed)
+    return section.kind_of_change(step.rows, D, step.contact, step.impulse, step.branch, free, since, speed)

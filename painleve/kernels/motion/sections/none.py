@@ -1,8 +1,8 @@
 """Template: a contact without friction in a step. Contact velocities are (v_n,), impulses (r_n,)."""
 
 from painleve._jit import jit
-from painleve.core import steps
 from painleve.core.rows import row_layout
+from painleve.core.sections import none as section
 from painleve.kernels.motion.sample import D
 
 NO_IMPULSE = (0.0,)
@@ -10,13 +10,12 @@ NO_IMPULSE = (0.0,)
 
 @jit
 def contact_velocity(rows, v):
-    return (steps.contact_velocity(rows, D, False, v)[0],)
+    return section.contact_velocity(rows, D, v)
 
 
 @jit
 def impulse(rows, contact, bias):
-    r_n, _, branch = steps.contact_problem(rows, D, False, contact[0], 0.0, bias)
-    return (r_n,), branch
+    return section.impulse(rows, D, contact, bias)
 
 
 @jit
@@ -32,9 +31,7 @@ def store_impulse(x, i, rows, r):
 
 @jit
 def kind_of_change(step, free, since, speed):
-    return steps.kind_of_change(
-        step.rows, D, False, step.contact[0], 0.0, step.impulse[0], 0.0, step.branch, free, since, speed
-    )
+    return section.kind_of_change(step.rows, D, step.contact, step.impulse, free)
 
 
 @jit

@@ -2,7 +2,7 @@
 
 from painleve._jit import jit
 from painleve.core.rows import row_layout
-from painleve.core.space import steps
+from painleve.core.sections import polygon as section
 from painleve.kernels.motion.sample import D
 
 VERTICES = 4
@@ -11,13 +11,12 @@ NO_IMPULSE = (0.0, 0.0, 0.0)
 
 @jit
 def contact_velocity(rows, v):
-    return steps.contact_velocity(rows, D, v)
+    return section.contact_velocity(rows, D, v)
 
 
 @jit
 def impulse(rows, contact, bias):
-    r_n, r_1, r_2, branch = steps.polygon_problem(rows, D, VERTICES, contact[0] + bias, contact[1], contact[2])
-    return (r_n, r_1, r_2), branch
+    return section.impulse(rows, D, VERTICES, contact, bias)
 
 
 @jit
@@ -35,6 +34,4 @@ def store_impulse(x, i, rows, r):
 
 @jit
 def kind_of_change(step, free, since, speed):
-    contact = step.contact
-    edge = steps.polygon_edge(step.rows, D, VERTICES, contact[1], contact[2])
-    return steps.kind_of_change(step.rows, D, contact[0], edge, step.impulse, step.branch, free, since, speed)
+    return section.kind_of_change(step.rows, D, VERTICES, step.contact, step.impulse, step.branch, free, since, speed)

@@ -1,8 +1,8 @@
 """Template: planar friction in a step. Contact velocities are (v_n, v_t), impulses (r_n, r_t)."""
 
 from painleve._jit import jit
-from painleve.core import steps
 from painleve.core.rows import row_layout
+from painleve.core.sections import segment as section
 from painleve.kernels.motion.sample import D
 
 NO_IMPULSE = (0.0, 0.0)
@@ -10,13 +10,12 @@ NO_IMPULSE = (0.0, 0.0)
 
 @jit
 def contact_velocity(rows, v):
-    return steps.contact_velocity(rows, D, True, v)
+    return section.contact_velocity(rows, D, v)
 
 
 @jit
 def impulse(rows, contact, bias):
-    r_n, r_t, branch = steps.contact_problem(rows, D, True, contact[0], contact[1], bias)
-    return (r_n, r_t), branch
+    return section.impulse(rows, D, contact, bias)
 
 
 @jit
@@ -32,10 +31,9 @@ def store_impulse(x, i, rows, r):
 
 @jit
 def kind_of_change(step, free, since, speed):
-    r, contact = step.impulse, step.contact
-    return steps.kind_of_change(step.rows, D, True, contact[0], contact[1], r[0], r[1], step.branch, free, since, speed)
+    return section.kind_of_change(step.rows, D, step.contact, step.impulse, step.branch, free, since, speed)
 
 
 @jit
 def solutions(rows, contact, gap_rate):
-    return steps.solutions(rows, D, True, gap_rate, contact[1], 0.0)
+    return section.solutions(rows, D, gap_rate, contact[1])
