@@ -19,20 +19,21 @@ from pathlib import Path
 
 from painleve.errors import InputError
 
-__all__ = ["flush_folder", "remove_stale", "write_whole", "written_aside"]
+__all__ = ["flush_folder", "remove_stale", "try_place", "write_whole", "written_aside"]
 
 _ASIDE = re.compile(r"\..+\.(?P<pid>[0-9]{1,10})\.part(\.[a-z]+)?", re.ASCII)
 
 
-def write_whole(target: Path, content: bytes | memoryview, *, durable: bool = True) -> None:
-    """Make the bytes the content of `target`; an older file stays what it was until then. Raises OSError.
+def write_whole(target: Path, *content: bytes, durable: bool = True) -> None:
+    """Make the bytes, one after the other, the content of `target`; an older file stays until then. Raises OSError.
 
     `durable`: not even a power cut loses both the old file and the new one.
     """
     with _aside(target, "") as (handle, path):
-        left = memoryview(content).cast("B")
-        while left:
-            left = left[os.write(handle, left) :]
+        for part in content:
+            left = memoryview(part)
+            while left:
+                left = left[os.write(handle, left) :]
         if durable:
             os.fsync(handle)
         os.replace(path, target)
@@ -54,6 +55,14 @@ def written_aside(target: Path, ending: str = "") -> Iterator[Path]:
         raise InputError(
             f"output {target}: cannot be written ({error.strerror or error}); give another place"
         ) from error
+
+
+def try_place(target: Path) -> None:
+    """Raises OSError where no file of that name can be made."""
+    with contextlib.suppress(FileNotFoundError):
+        os.lstat(target)  # of a name that is too long, say
+    with _aside(target, ""):
+        pass
 
 
 def remove_stale(folder: Path) -> None:

@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -16,9 +17,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from painleve import store
 from painleve.errors import InputError
-from painleve.store import check_schema, check_writable, flags, load, provenance, save
+from painleve.store import check_schema, check_writable, flags, load, origin, provenance, save
 
 # Awkward on purpose: signed zero, a subnormal number, infinity, NaN, and neighbours of one.
 # The NaN has a payload: to mask a value that is marked as missing would put another NaN in its place.
@@ -106,16 +106,19 @@ def test_a_file_is_on_the_disk_whole_before_it_takes_its_name_and_its_name_after
 def test_an_exception_while_writing_leaves_the_old_file_and_nothing_else(
     failure: BaseException, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path = save(make_dataset(), tmp_path / "a.h5")
+    folder = tmp_path / "output"
+    folder.mkdir()
+    path, write = save(make_dataset(), folder / "a.h5"), os.write
 
-    def half_written(self: xr.Dataset, target: Path, **_: object) -> None:
-        Path(target).write_bytes(b"\x89HDF half of a file")
+    def half_written(handle: int, content: memoryview) -> int:
+        write(handle, content[: len(content) // 2])
         raise failure
 
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", half_written)
+    monkeypatch.setattr(os, "write", half_written)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))  # where the result is kept if the disk is at fault
     with pytest.raises(InputError if isinstance(failure, OSError) else type(failure)):
         save(make_dataset(shift=1.0), path)
-    assert list(tmp_path.iterdir()) == [path]
+    assert list(folder.iterdir()) == [path]
     assert load(path).identical(make_dataset().assign_attrs(load(path).attrs))
 
 
@@ -253,7 +256,7 @@ def test_a_checkout_that_differs_from_its_commit_is_said_to(tmp_path: Path, monk
 
     package = tmp_path / "painleve"
     package.mkdir()
-    monkeypatch.setattr(store, "__file__", str(package / "store.py"))
+    monkeypatch.setattr(origin, "__file__", str(package / "store" / "origin.py"))
     assert recorded() == "unknown"
     (package / "law.py").write_text("gamma = 1\n")
     git(tmp_path, "init", "--quiet")
