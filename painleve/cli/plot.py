@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from painleve.cli.common import add_command, add_json, print_json
 from painleve.cli.studies import drawings_of
+from painleve.errors import InputError
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,16 +43,35 @@ def run(options: argparse.Namespace) -> int:
 
     target = check_writable(options.output or options.file.with_suffix(".gif" if options.animate else ".png"))
     dataset = load(options.file)
-    if options.animate:
-        written = _animate(dataset, target)
-    else:
-        kind = str(dataset.attrs["kind"])
-        written = save_figure(draw(dataset, None if kind in DRAWINGS else drawings_of(kind)), target)
+    with _answering_for(options.file):
+        if options.animate:
+            written = _animate(dataset, target)
+        else:
+            kind = str(dataset.attrs["kind"])
+            written = save_figure(draw(dataset, None if kind in DRAWINGS else drawings_of(kind)), target)
     if options.json:
         print_json({"file": str(written)})
     else:
         print(written)
     return 0
+
+
+@contextmanager
+def _answering_for(file: Path) -> Iterator[None]:
+    """One line where a file is built as it should be, and holds numbers of which nothing, or not all, can be drawn."""
+    from painleve.notes import one_line, say
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            yield
+        except InputError:
+            raise
+        except Exception as error:
+            why = one_line(str(error)) or type(error).__name__
+            raise InputError(f"input {file}: no figure can be drawn of what it holds ({why})") from error
+    if caught:
+        say(f"{file}: the figure may not show what it holds: {caught[0].message}")
 
 
 def _animate(dataset: xr.Dataset, target: Path) -> Path:

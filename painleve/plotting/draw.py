@@ -15,11 +15,12 @@ from painleve.errors import InputError
 from painleve.plotting.distances import draw_distances
 from painleve.plotting.friction_map import draw_friction_map
 from painleve.plotting.gamma_map import draw_gamma_map
+from painleve.plotting.layouts import LAYOUTS
 from painleve.plotting.members import draw_members
 from painleve.plotting.regimes import draw_regimes
 from painleve.plotting.style import STYLE
 from painleve.plotting.trajectory import draw_trajectory
-from painleve.store import check_writable
+from painleve.store import check_writable, hold_to_layout
 from painleve.whole_file import written_aside
 
 __all__ = ["DRAWINGS", "Drawing", "draw", "save_figure"]
@@ -46,7 +47,8 @@ class Recorded(Protocol):
 
 
 def draw(result: xr.Dataset | Recorded, more: Mapping[str, Drawing] | None = None) -> Figure:
-    """The figure of a dataset of this package, or of a trajectory. Raises InputError for a kind that has none.
+    """The figure of a dataset of this package, or of a trajectory. Raises InputError for a kind that has none, and for one
+    that does not hold what its kind does.
 
     `more`: drawings of further kinds, such as those of a study.
     """
@@ -54,6 +56,7 @@ def draw(result: xr.Dataset | Recorded, more: Mapping[str, Drawing] | None = Non
     kind, drawings = str(dataset.attrs.get("kind", "unknown")), {**DRAWINGS, **(more or {})}
     if kind not in drawings:
         raise InputError(f"no figure for a dataset of kind {kind!r}; there are figures of {', '.join(drawings)}")
+    hold_to_layout(dataset, LAYOUTS.get(kind, ""))
     with mpl.rc_context(STYLE):
         figure = drawings[kind](dataset)
         # Laid out once here and not again for each format: that would be half of the time of saving it.

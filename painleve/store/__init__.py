@@ -5,6 +5,7 @@ package. A file is made in memory, written aside, flushed to the disk and moved 
 moment finds the old file or the new one. What is read is checked first: its digest, how it is built, and its schema.
 """
 
+from painleve.store.layout import hold_to_layout
 from painleve.store.origin import PROVENANCE, provenance
 from painleve.store.read import load
 from painleve.store.schema import NOT_RUN, check_schema, flags, labels_of
@@ -17,6 +18,7 @@ __all__ = [
     "check_schema",
     "check_writable",
     "flags",
+    "hold_to_layout",
     "labels_of",
     "load",
     "provenance",

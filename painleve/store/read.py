@@ -1,7 +1,7 @@
 """Files to datasets: checked before they are used, because a result file may be damaged, or made by anybody.
 
 The HDF5 library can crash, loop for ever or take all memory over bytes that it did not write. So a file that this
-process does not know is looked at by a short-lived process first (painleve.store.structure), within limits.
+process does not know is looked at by a short-lived process first (painleve.store.contents), within limits.
 """
 
 from __future__ import annotations
@@ -13,14 +13,11 @@ import sys
 from pathlib import Path
 from typing import Any, BinaryIO
 
-import h5netcdf
-import h5py
 import xarray as xr
-from xarray.backends import H5NetCDFStore
 
 from painleve.errors import InputError
 from painleve.notes import one_line
-from painleve.store import structure
+from painleve.store import contents
 from painleve.store.digest import Damaged, content_digest
 from painleve.store.schema import check_schema
 
@@ -75,24 +72,24 @@ def _opened(source: Path) -> BinaryIO:
 
 def _look_at(source: Path) -> None:
     """Raises ValueError that says what is strange about a file, found by a process that may fail."""
-    command = [sys.executable, "-P", structure.__file__, str(source.absolute())]
+    command = [sys.executable, "-P", contents.__file__, str(source.absolute())]
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
-    patience = structure.SECONDS + source.stat().st_size / structure.BYTES_PER_SECOND
+    patience = contents.SECONDS + source.stat().st_size / contents.BYTES_PER_SECOND
     try:
         done = subprocess.run(
             command, stdin=subprocess.DEVNULL, capture_output=True, timeout=10 * patience, env=environment, check=False
         )
     except subprocess.TimeoutExpired:
         raise ValueError("reading it does not end") from None
-    if done.returncode == structure.STRANGE:
+    if done.returncode == contents.STRANGE:
         raise ValueError(done.stdout.decode(errors="replace"))
     if done.returncode != 0:
         raise ValueError("reading it takes too long, too much memory, or stops the HDF5 library")
 
 
 def _read(source: Path) -> xr.Dataset:
-    with h5py.File(source, "r") as file, h5netcdf.File(file, "r", decode_vlen_strings=True) as root:
-        return xr.open_dataset(H5NetCDFStore(root), **DECODING).load()
+    variables, attributes = contents.read_contents(source)
+    return xr.decode_cf(xr.Dataset(dict(variables), attrs=dict(attributes)), **DECODING)
 
 
 def _why(error: Exception) -> str:

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
+from painleve.store.contents import MOST_ATTRIBUTES, MOST_TEXT, MOST_VARIABLES
 from painleve.store.origin import PROVENANCE
-from painleve.store.structure import MOST_ATTRIBUTES, MOST_TEXT, MOST_VARIABLES
 
 __all__ = ["NOT_RUN", "check_schema", "flags", "labels_of"]
 
@@ -47,6 +47,8 @@ def check_schema(dataset: xr.Dataset) -> None:
 
 
 def _check_variable(name: str, variable: xr.Variable) -> None:
+    if not name.isidentifier():
+        raise ValueError(f"variable {name!r}: its name is not an identifier")
     for attribute, meaning in (("units", "a unit (1 if it has none)"), ("long_name", "a sentence")):
         value = variable.attrs.get(attribute)
         if not (isinstance(value, str) and value):
