@@ -19,12 +19,12 @@ from pathlib import Path
 
 from painleve.errors import InputError
 
-__all__ = ["flush_folder", "remove_stale", "try_place", "write_whole", "written_aside"]
+__all__ = ["flush_folder", "remove_stale", "said_of", "try_place", "write_whole", "written_aside"]
 
 _ASIDE = re.compile(r"\..+\.(?P<pid>[0-9]{1,10})\.part(\.[a-z]+)?", re.ASCII)
 
 
-def write_whole(target: Path, *content: bytes, durable: bool = True) -> None:
+def write_whole(target: Path, *content: bytes | memoryview, durable: bool = True) -> None:
     """Make the bytes, one after the other, the content of `target`; an older file stays until then. Raises OSError.
 
     `durable`: not even a power cut loses both the old file and the new one.
@@ -47,10 +47,16 @@ def written_aside(target: Path, ending: str = "") -> Iterator[Path]:
 
     `ending`: of the path's name, for a writer that looks at it. Raises InputError where the file cannot be written.
     """
+    with said_of(target), _aside(target, ending) as (_, path):
+        yield path
+        os.replace(path, target)
+
+
+@contextmanager
+def said_of(target: Path) -> Iterator[None]:
+    """Inside, what stops a file from being written is an InputError that names the file."""
     try:
-        with _aside(target, ending) as (_, path):
-            yield path
-            os.replace(path, target)
+        yield
     except OSError as error:
         raise InputError(
             f"output {target}: cannot be written ({error.strerror or error}); give another place"

@@ -127,7 +127,7 @@ def bomb(file: File, random: random.Random) -> None:
     """Terabytes that no disk holds."""
     name = _variable(file, random)
     shape = random.choice([(2**40,), (2**20, 2**20), (2**33, 3)])
-    chunks = random.choice([None, (1024,) * len(shape)])
+    chunks = random.choice([None, (3,) * len(shape)])
     pressed = {"compression": "gzip"} if chunks else {}
     _replace(file, name, lambda: file.create_dataset(name, shape, "f8", chunks=chunks, **pressed))
 

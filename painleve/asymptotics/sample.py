@@ -22,7 +22,7 @@ from painleve.core.reduce import PAIR, POINT, SEGMENT
 from painleve.core.sampling import BLOCK, Sampler
 from painleve.core.taylor import no_polynomials
 from painleve.errors import InputError, nearest
-from painleve.lanes import as_they_finish
+from painleve.lanes import as_they_finish, thread_count
 from painleve.sets import Bounds, excess_of_segment_from_profile
 from painleve.theory.domain import check_domain
 from painleve.theory.limit_set import LimitSet
@@ -57,8 +57,7 @@ class SampleOptions:
         if self.sampler not in SAMPLERS:
             hint = nearest(self.sampler, SAMPLERS)
             raise InputError(f"sampler: no {self.sampler!r}{hint}; choose one of {', '.join(SAMPLERS)}")
-        if self.threads is not None and self.threads < 1:
-            raise InputError(f"threads: {self.threads} must be at least 1")
+        thread_count(self.threads)
 
 
 @dataclass

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import re
+import signal
 import sys
 from collections.abc import Mapping, Sequence
 from typing import NoReturn
@@ -27,6 +28,7 @@ from painleve.cli import (
     study,
     sweep,
 )
+from painleve.cli.process import drop_output, ended_by, print_anything, terminable
 from painleve.errors import InputError, nearest
 from painleve.notes import one_line
 from painleve.progress import reporting
@@ -64,6 +66,18 @@ class _Parser(argparse.ArgumentParser):
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status."""
+    print_anything()
+    with terminable() as heard:
+        status = _run(arguments)
+        try:
+            if sys.stdout is not None:
+                sys.stdout.flush()
+        except OSError as error:
+            status = _without_output(error)
+    return ended_by(heard[0]) if heard else status
+
+
+def _run(arguments: Sequence[str] | None) -> int:
     try:
         words = sys.argv[1:] if arguments is None else list(arguments)
         parser, commands = _parser()
@@ -74,12 +88,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         return _complain(str(error))
     except OSError as error:
-        return _complain(f"{error.filename or 'file'}: {error.strerror or error}")
+        if error.filename is None:
+            return _without_output(error)
+        return _complain(f"{error.filename}: {error.strerror or error}")
     except ArithmeticError as error:
         return _complain(f"the numbers asked for cannot be decided: {error}")
     except KeyboardInterrupt:
-        print("painleve: interrupted", file=sys.stderr)
-        return 130
+        _complain("interrupted")
+        return ended_by(signal.SIGINT)
+
+
+def _without_output(error: OSError) -> int:
+    """What was to be printed cannot be: a reader that is gone, as `head` when it has enough, wants no word about it."""
+    drop_output()
+    if isinstance(error, BrokenPipeError):
+        return ended_by(signal.SIGPIPE)
+    return _complain(f"the output cannot be written: {error.strerror or error}")
 
 
 def _tell(work: str) -> None:
@@ -89,9 +113,8 @@ def _tell(work: str) -> None:
 
 
 def _complain(message: str) -> int:
-    line = " ".join(message.split())
-    line = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in line)  # no terminal commands
-    print(f"painleve: {line}", file=sys.stderr)
+    with contextlib.suppress(AttributeError, OSError):  # nobody may be there to read it
+        print(f"painleve: {one_line(message)}", file=sys.stderr, flush=True)
     return 2
 
 

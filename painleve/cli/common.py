@@ -5,13 +5,18 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import re
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from painleve.errors import InputError
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from painleve.mechanics.scene import Scene
     from painleve.mechanics.state import State
 
@@ -22,11 +27,15 @@ __all__ = [
     "add_state",
     "assignments",
     "count",
+    "keeping",
     "print_json",
     "read_state",
     "read_state_words",
     "real",
 ]
+
+_WHOLE = re.compile(r"[+-]?[0-9]+")
+_NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 
 
 def add_command(
@@ -127,8 +136,8 @@ def assignments(words: Sequence[str], option: str) -> dict[str, str]:
 
 
 def real(text: str) -> float:
-    """A float for argparse; nan and inf are refused."""
-    value = float(text)
+    """A float for argparse, written as numbers are: nan, inf, 1_000 and the digits of other scripts are refused."""
+    value = float(text) if _NUMBER.fullmatch(text.strip(" ")) else math.nan
     if not math.isfinite(value):
         raise ValueError(text)
     return value
@@ -136,18 +145,39 @@ def real(text: str) -> float:
 
 def count(text: str) -> int:
     """A whole number for argparse; 1e6 is one."""
-    try:
+    if _WHOLE.fullmatch(text.strip(" ")):
         return int(text)
-    except ValueError:
-        value = float(text)
-        if not value.is_integer():
-            raise
-        return int(value)
+    value = real(text)
+    if not value.is_integer():
+        raise ValueError(text)
+    return int(value)
+
+
+@contextmanager
+def keeping(dataset: xr.Dataset, target: Path) -> Iterator[Path | None]:
+    """Write a dataset, then do what stands inside: a disk that fails takes the file and not what is printed.
+
+    Gives the file, or None where it could not be written; the InputError that says why is raised at the end.
+    """
+    from painleve.store import save
+
+    try:
+        written, failure = save(dataset, target), None
+    except InputError as error:
+        written, failure = None, error
+    yield written
+    if failure is not None:
+        raise failure
 
 
 def print_json(data: object) -> None:
     """Strict JSON: numbers that are not finite become null."""
-    print(json.dumps(_strict(data), indent=2, ensure_ascii=False))
+    text = json.dumps(_strict(data), indent=2, ensure_ascii=False)
+    try:
+        text.encode(getattr(sys.stdout, "encoding", None) or "ascii")
+    except UnicodeEncodeError:
+        text = json.dumps(_strict(data), indent=2)
+    print(text)
 
 
 def _strict(data: object) -> object:

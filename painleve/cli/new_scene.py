@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import errno
+import os
 from pathlib import Path
 from typing import Any
 
@@ -31,12 +33,30 @@ def run(options: argparse.Namespace) -> int:
     if target.suffix != ".toml":
         raise InputError(f"output {target}: a scene file is a .toml; give such a name")
     try:
-        with target.open("x", encoding="utf-8") as file:  # never over a file that is there
-            file.write(text)
+        os.fsencode(target).decode("utf-8")
+        _write_new(target, text)
     except FileExistsError:
         raise InputError(f"output {target}: exists, and may be your work; give another name with -o") from None
+    except UnicodeError:
+        raise InputError(f"output {target}: its name is not text in UTF-8; give another name") from None
+    except OSError as error:
+        raise InputError(
+            f"output {target}: cannot be written ({error.strerror or error}); give another place"
+        ) from None
     if options.json:
         print_json({"file": str(target)})
     else:
         print(f"{target}: change it, then try `painleve classify {target} --state paradox`")
     return 0
+
+
+def _write_new(target: Path, text: str) -> None:
+    """Never over a file that is there; and none is left where the disk has no room for it."""
+    with target.open("xb", buffering=0) as file:
+        try:
+            if file.write(text.encode()) < len(text.encode()):
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+            os.fsync(file.fileno())
+        except BaseException:
+            target.unlink()
+            raise

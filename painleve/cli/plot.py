@@ -43,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
 
     target = check_writable(options.output or options.file.with_suffix(".gif" if options.animate else ".png"))
     dataset = load(options.file)
-    with _answering_for(options.file):
+    with answering_for(options.file):
         if options.animate:
             written = _animate(dataset, target)
         else:
@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 @contextmanager
-def _answering_for(file: Path) -> Iterator[None]:
+def answering_for(file: Path) -> Iterator[None]:
     """One line where a file is built as it should be, and holds numbers of which nothing, or not all, can be drawn."""
     from painleve.notes import one_line, say
 

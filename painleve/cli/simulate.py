@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from painleve.cli.common import add_command, add_json, print_json
+from painleve.cli.common import add_command, add_json, keeping, print_json
 from painleve.cli.motion import add_motion, read_options, read_start
 from painleve.errors import InputError
 
@@ -34,9 +35,9 @@ def run(options: argparse.Namespace) -> int:
 
     from painleve.core.motion_codes import Ending
     from painleve.dynamics.simulate import simulate
-    from painleve.store import check_writable, save
+    from painleve.store import check_output
 
-    target = options.output and check_writable(options.output)
+    target = options.output and check_output(options.output)
     with tqdm(total=options.until, bar_format=BAR, leave=False, delay=1.0, disable=None) as bar:
         trajectory = simulate(
             read_start(options),
@@ -49,15 +50,18 @@ def run(options: argparse.Namespace) -> int:
         )
     if trajectory.ending is Ending.NOT_FINITE:
         raise InputError(f"{trajectory.sentence}; after {trajectory.steps} steps, at t = {trajectory.t[-1]:.6g}")
-    if target is not None:
-        from painleve.sweep.trajectories import trajectory_dataset
-
-        save(trajectory_dataset(trajectory), target)
-    if options.json:
-        print_json(trajectory.as_dict())
-    else:
-        _print(trajectory)
+    with _keeping(trajectory, target):
+        if options.json:
+            print_json(trajectory.as_dict())
+        else:
+            _print(trajectory)
     return 0
+
+
+def _keeping(trajectory: Trajectory, target: Path | None) -> AbstractContextManager[Path | None]:
+    from painleve.sweep.trajectories import trajectory_dataset
+
+    return keeping(trajectory_dataset(trajectory), target) if target else nullcontext()
 
 
 def _print(trajectory: Trajectory) -> None:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from painleve.cli.common import add_command, add_json, add_scene, add_state, print_json, read_state_words, real
+from painleve.cli.common import add_command, add_json, add_scene, add_state, keeping, print_json, read_state_words, real
 from painleve.cli.method import add_method, read_method
 from painleve.errors import InputError
 
@@ -46,10 +46,10 @@ def run(options: argparse.Namespace) -> int:
     from tqdm import tqdm
 
     from painleve.mechanics.library import load_scene
-    from painleve.store import check_writable, save
+    from painleve.store import check_output
     from painleve.sweep import sweep_distances
 
-    target = check_writable(options.output)
+    target = check_output(options.output)
     scene = load_scene(options.scene)
     names, keys, parameters = read_state_words(options, scene)
     over = _over(options.over)
@@ -74,12 +74,21 @@ def run(options: argparse.Namespace) -> int:
             options=settings,
             progress=progress,
         )
-    save(dataset, target)
-    verdicts = list(_verdicts(dataset))
-    if options.json:
-        sizes = {str(name): int(size) for name, size in dataset.sizes.items()}
-        print_json({"file": str(target), "dimensions": sizes, "points": points, "verdicts": verdicts})
-        return 0
+    with keeping(dataset, target) as written:
+        verdicts = list(_verdicts(dataset))
+        if options.json:
+            sizes = {str(name): int(size) for name, size in dataset.sizes.items()}
+            file = written and str(written)
+            print_json({"file": file, "dimensions": sizes, "points": points, "verdicts": verdicts})
+        else:
+            _print(verdicts)
+            if written:
+                number = f"{points} {'point' if points == 1 else 'points'}"
+                print(f"{written}: {number}; `painleve plot {written}` draws them")
+    return 0
+
+
+def _print(verdicts: Sequence[dict[str, str]]) -> None:
     for verdict in verdicts:
         print(
             "{point}: {branch}; {status}: {reason}".format(**verdict)
@@ -88,8 +97,6 @@ def run(options: argparse.Namespace) -> int:
         )
         if verdict["failure"] and verdict["branch"] != "not_run":
             print("  failed at an eps: {failure}".format(**verdict))
-    print(f"{target}: {points} {'point' if points == 1 else 'points'}; `painleve plot {target}` draws them")
-    return 0
 
 
 def _verdicts(dataset: xr.Dataset) -> Iterator[dict[str, str]]:

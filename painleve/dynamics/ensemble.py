@@ -21,7 +21,7 @@ from painleve.dynamics.scheme import Stepped
 from painleve.dynamics.schemes import scheme_for
 from painleve.dynamics.start import Start, as_start
 from painleve.errors import InputError
-from painleve.lanes import as_they_finish
+from painleve.lanes import as_they_finish, thread_count
 from painleve.mechanics.state import State
 
 __all__ = ["Ensemble", "Members", "run_ensemble", "wilson_interval"]
@@ -241,8 +241,7 @@ def _check_difference(task: _Task) -> None:
 
 
 def _collect(task: _Task, threads: int | None, keep: bool, progress: Callable[[int], None] | None) -> Ensemble:
-    if threads is not None and threads < 1:
-        raise InputError(f"threads: {threads} must be at least 1")
+    thread_count(threads)
     tally, ending = _EnsembleTally(), Ending.REACHED_END
     width = (task.until or 1.0) / (BINS - 1)  # a jump may come up to one step after the end: the last bin
     kept = _empty_members(task.count) if keep else None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -21,7 +22,7 @@ from painleve.plotting.regimes import draw_regimes
 from painleve.plotting.style import STYLE
 from painleve.plotting.trajectory import draw_trajectory
 from painleve.store import check_writable, hold_to_layout
-from painleve.whole_file import written_aside
+from painleve.whole_file import said_of, write_whole
 
 __all__ = ["DRAWINGS", "Drawing", "draw", "save_figure"]
 
@@ -71,6 +72,9 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
     form = target.suffix.removeprefix(".").lower()
     if form not in WITHOUT_DATE:
         raise InputError(f"output {target}: cannot draw {form or 'a file without a suffix'}; use .pdf, .png or .svg")
-    with written_aside(target) as aside, mpl.rc_context({**STYLE, "svg.hashsalt": "painleve"}):
-        figure.savefig(aside, format=form, metadata=WITHOUT_DATE[form])
+    content = io.BytesIO()  # a writer that a full disk stops leaves its file open
+    with mpl.rc_context({**STYLE, "svg.hashsalt": "painleve"}):
+        figure.savefig(content, format=form, metadata=WITHOUT_DATE[form])
+    with said_of(target):
+        write_whole(target, content.getbuffer())
     return target

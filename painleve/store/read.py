@@ -63,11 +63,10 @@ def _opened(source: Path) -> BinaryIO:
     if not os.path.exists(source):
         raise InputError(f"input {one_line(str(source))}: there is no such file")
     handle = os.open(source, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
-    file = os.fdopen(handle, "rb")
     if not stat.S_ISREG(os.fstat(handle).st_mode):
-        file.close()
+        os.close(handle)
         raise InputError(f"input {one_line(str(source))}: is not a file")
-    return file
+    return os.fdopen(handle, "rb")
 
 
 def _look_at(source: Path) -> None:
