@@ -131,9 +131,12 @@ def test_ctrl_c_while_proposition_1_is_checked_keeps_the_trajectory(monkeypatch:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scheme", sorted(LONG))
+@pytest.mark.parametrize(
+    ("scheme", "number", "status"),
+    [*((scheme, signal.SIGINT, 0) for scheme in sorted(LONG)), ("contact_dynamics", signal.SIGTERM, 143)],
+)
 def test_a_simulation_stopped_from_the_terminal_answers_and_leaves_a_file_that_loads(
-    scheme: str, tmp_path: Path
+    scheme: str, number: int, status: int, tmp_path: Path
 ) -> None:
     pty, termios = pytest.importorskip("pty"), pytest.importorskip("termios")
     terminal, side = pty.openpty()
@@ -144,12 +147,13 @@ def test_a_simulation_stopped_from_the_terminal_answers_and_leaves_a_file_that_l
     os.close(side)
     try:
         wait_for(terminal, b"%|", times=2)  # the bar, and the bar again: some steps are done
-        process.send_signal(signal.SIGINT)
+        process.send_signal(number)
+        process.send_signal(number if number == signal.SIGTERM else 0)  # `timeout` sends it twice
         answer, _ = process.communicate(timeout=PATIENCE)
     finally:
         process.kill()
     os.close(terminal)
-    assert process.returncode == 0
+    assert process.returncode == status
     found = json.loads(answer)
     assert found["status"] == "interrupted"
     assert found["steps"] > 0

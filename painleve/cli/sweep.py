@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import signal
 import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -12,6 +13,7 @@ import numpy as np
 
 from painleve.cli.common import add_command, add_json, add_scene, add_state, keeping, print_json, read_state_words, real
 from painleve.cli.method import add_method, read_method
+from painleve.cli.process import ended_by
 from painleve.errors import InputError
 
 if TYPE_CHECKING:
@@ -78,25 +80,35 @@ def run(options: argparse.Namespace) -> int:
         verdicts = list(_verdicts(dataset))
         if options.json:
             sizes = {str(name): int(size) for name, size in dataset.sizes.items()}
-            file = written and str(written)
-            print_json({"file": file, "dimensions": sizes, "points": points, "verdicts": verdicts})
+            file, status = written and str(written), dataset.attrs["status"]
+            facts = {"file": file, "status": status, "dimensions": sizes, "points": points, "verdicts": verdicts}
+            print_json(facts)
         else:
             _print(verdicts)
             if written:
-                number = f"{points} {'point' if points == 1 else 'points'}"
-                print(f"{written}: {number}; `painleve plot {written}` draws them")
-    return 0
+                print(f"{written}: {_points(dataset, points)}; `painleve plot {written}` draws them")
+    return 0 if dataset.attrs["status"] == "complete" else ended_by(signal.SIGINT)
 
 
 def _print(verdicts: Sequence[dict[str, str]]) -> None:
     for verdict in verdicts:
-        print(
-            "{point}: {branch}; {status}: {reason}".format(**verdict)
-            if verdict["branch"] != "not_run"
-            else "{point}: failed: {failure}".format(**verdict)
-        )
-        if verdict["failure"] and verdict["branch"] != "not_run":
+        known, judged = verdict["branch"] != "not_run", verdict["status"] != "not_run"
+        if judged:
+            print("{point}: {branch}; {status}: {reason}".format(**verdict))
+        elif known:
+            print("{point}: {branch}; interrupted before its verdict".format(**verdict))
+        else:
+            print(
+                "{point}: ".format(**verdict) + (f"failed: {verdict['failure']}" if verdict["failure"] else "not run")
+            )
+        if verdict["failure"] and known:
             print("  failed at an eps: {failure}".format(**verdict))
+
+
+def _points(dataset: xr.Dataset, points: int) -> str:
+    number = f"{points} {'point' if points == 1 else 'points'}"
+    ran = int((dataset["outcome"] != 0).sum())
+    return number if dataset.attrs["status"] == "complete" else f"interrupted after {ran} of {number}"
 
 
 def _verdicts(dataset: xr.Dataset) -> Iterator[dict[str, str]]:

@@ -44,6 +44,8 @@ def sweep_distances(
     `states` are names of the library (none: the one state that `keys` give); `over` maps parameters or state keys to
     exact values. `options` belong to the method; `progress` is called with a label after every eps of every point.
     A side of a bound that is not known is NaN. A point that fails is kept: its outcome is `failed`, with the reason.
+    Ctrl-C ends the sweep early, with what was computed until then: the attribute `status` is `interrupted`, no more
+    `complete`, and the other points are `not_run`.
 
     Raises InputError for bad eps, names, values and methods, and where every single point fails.
     """
@@ -52,16 +54,22 @@ def sweep_distances(
     options = chosen.options() if options is None else options
     grid = make_grid(scene, states=states, keys=keys, parameters=parameters, over=over)
     table = DistanceTable(grid, radii)
-    for index in grid.points():
-        _run_point(table, index, lambda limit, value: distance(limit, value, method, options), progress)
+    status = "complete"
+    try:
+        for index in grid.points():
+            _run_point(table, index, lambda limit, value: distance(limit, value, method, options), progress)
+    except KeyboardInterrupt:
+        if not table.outcome.any():
+            raise
+        status = "interrupted"
     table.refuse_if_all_failed()
     settings = {name: value for name, value in vars(options).items() if isinstance(value, str | int | float)}
     source = provenance(
         scene=scene, scene_digest=make_kernels(scene).digest, seed=int(settings.get("seed", 0)), command=command
     )
     title = f"Distances between the limit set A and A_eps of {scene.name}: {scene.sentence}"
-    attributes = {"title": title, "kind": "distances", "method": method, "settings": json.dumps(settings), **source}
-    return table.dataset(attributes)
+    attributes = {"title": title, "kind": "distances", "method": method, "status": status}
+    return table.dataset({**attributes, "settings": json.dumps(settings), **source})
 
 
 def _run_point(
