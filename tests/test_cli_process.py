@@ -250,23 +250,6 @@ def test_what_is_written_as_no_number_is_none(
     assert_refused(["classify", "slender_rod", "--state", f"theta={number}"], capsys, tmp_path, monkeypatch)
 
 
-@pytest.mark.parametrize(("text", "value"), [("1_0", None), ("1_0.5", None), ("1_000_000", None), ("10", 10.0)])
-def test_a_number_of_a_scene_file_is_written_as_in_formulas(
-    text: str, value: float | None, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path = tmp_path / "a.toml"
-    assert main(["new-scene", "a", "-o", str(path)]) == 0
-    capsys.readouterr()
-    changed = path.read_text(encoding="utf-8").replace("default = 9.81", f"default = {text}", 1)
-    assert f"default = {text}" in changed
-    path.write_text(changed, encoding="utf-8")
-    if value is None:
-        line = assert_refused(["classify", "a.toml", "--state", "paradox"], capsys, tmp_path, monkeypatch)
-        assert "without _" in line
-    else:
-        assert main(["classify", str(path), "--state", "paradox"]) == 0
-
-
 @pytest.mark.parametrize("threads", ["1e5", "0", "-1", "257"])
 def test_a_number_of_threads_that_no_machine_has_is_refused(
     threads: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch

@@ -54,6 +54,12 @@ def within(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(read, "_look_at", read_contents)
 
 
+def test_a_sound_file_of_every_kind_is_drawn(sound: list[Path]) -> None:
+    for path in sound:
+        dataset = load(path)
+        DRAWINGS[dataset.attrs["kind"]](dataset)
+
+
 @pytest.mark.allow_fp_errors
 def test_every_mutated_file_gives_a_figure_or_one_line(sound: list[Path], tmp_path: Path, within: None) -> None:
     drawn, refused = 0, list[str]()

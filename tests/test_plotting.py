@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterator
 from itertools import combinations
 from pathlib import Path
@@ -152,8 +153,8 @@ def test_a_failure_while_drawing_leaves_the_old_figure(
     path = tmp_path / "a.png"
     path.write_bytes(b"old")
 
-    def broken(self: Figure, target: Path, **_: object) -> None:
-        Path(target).write_bytes(b"half")
+    def broken(self: Figure, target: io.BytesIO, **_: object) -> None:
+        target.write(b"half")
         raise OSError("no space left")
 
     monkeypatch.setattr(Figure, "savefig", broken)

@@ -73,8 +73,7 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
     if form not in WITHOUT_DATE:
         raise InputError(f"output {target}: cannot draw {form or 'a file without a suffix'}; use .pdf, .png or .svg")
     content = io.BytesIO()  # a writer that a full disk stops leaves its file open
-    with mpl.rc_context({**STYLE, "svg.hashsalt": "painleve"}):
+    with said_of(target), mpl.rc_context({**STYLE, "svg.hashsalt": "painleve"}):
         figure.savefig(content, format=form, metadata=WITHOUT_DATE[form])
-    with said_of(target):
         write_whole(target, content.getbuffer())
     return target

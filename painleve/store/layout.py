@@ -49,7 +49,7 @@ def _hold_variable(name: str, variable: xr.Variable, kind: str, dims: str) -> No
     fits = {"number": variable.dtype.kind in "iuf", "code": is_code, "text": variable.dtype.kind in "OU"}
     if not fits[kind]:
         raise InputError(f"{name} is not {'text' if kind == 'text' else f'a {kind}'}, as in a dataset of its kind")
-    expected = re.escape(dims).replace(re.escape(",..."), "(,.*)?")
+    expected = re.escape(dims).replace(re.escape(",..."), "(,.*)?").replace(re.escape("..."), ".*")
     if not re.fullmatch(expected, ",".join(map(str, variable.dims))):
         shown = ", ".join(map(str, variable.dims))
         raise InputError(f"{name} is over ({one_line(shown)}); in a dataset of its kind it is over ({dims})")

@@ -19,8 +19,6 @@ __all__ = ["Document", "Number", "read_document", "shown_file", "text_of_file"]
 MAX_BYTES = 32 * 1024  # the scenes of the library would take 3 KB
 MAX_DIGITS = 1200  # of one number: as many as its formula may have bits to hold them
 
-_PARTED = re.compile(r"[+-]?[0-9]+(_[0-9]+)+([eE][+-]?[0-9_]+)?")  # TOML's own; in formulas it would be a name
-
 
 class Number(str):
     """A number of a TOML file as it is written there, so that 0.1 is one tenth."""
@@ -82,8 +80,6 @@ def read_document(name: str, text: str) -> Document:
     for word in words:
         if word.kind == "bare" and len(word.text) > MAX_DIGITS:
             raise InputError(f"{name}, line {word.line}: a number or a name of more than {MAX_DIGITS} characters")
-        if word.kind == "bare" and _PARTED.fullmatch(word.text):
-            raise InputError(f"{name}, line {word.line}: write the number {shown(word.text)} without _")
     try:
         table = tomllib.loads(text, parse_float=Number)
     except tomllib.TOMLDecodeError as error:
