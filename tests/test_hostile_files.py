@@ -25,12 +25,13 @@ from painleve.plotting.draw import DRAWINGS
 from painleve.store import contents, load, read, save
 from painleve.store.contents import read_contents
 from painleve.sweep import map_gamma, map_regimes, sweep_distances, sweep_members
+from painleve.sweep.friction_map import map_friction
 from painleve.sweep.trajectories import trajectory_dataset
 
 ROD, WORN = load_scene("slender_rod"), load_scene("worn_tip_rod")
 FEW = SampleOptions(samples=2048)
 STATES = ("sliding", "isolated")
-MUTANTS = 10 * len(MUTATIONS)
+MUTANTS = 12 * len(MUTATIONS)
 
 
 @pytest.fixture(scope="module")
@@ -42,6 +43,7 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
         "members": sweep_members(WORN, eps=(1e-1, 1e-2), states=STATES, options=FEW),
         "gamma_map": map_gamma(WORN, states=STATES, points=(15, 9)),
         "regimes": map_regimes(ROD, axes=axes, parameters={"mu": 2}),
+        "friction_map": map_friction(ROD, {"theta": np.linspace(0.1, 1.5, 12), "mu": np.linspace(0.5, 2.0, 4)}),
         "trajectory": trajectory_dataset(simulate(make_state(ROD, "stoss"), step=1e-2, until=0.9)),
     }
     folder = tmp_path_factory.mktemp("sound")
@@ -119,7 +121,7 @@ def test_a_pipe_a_folder_and_a_device_are_no_files(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("megabytes", [1, 10])
 def test_an_attribute_of_many_megabytes_is_refused_at_once(megabytes: int, sound: list[Path], tmp_path: Path) -> None:
-    path, _ = mutant(sound[4], tmp_path, 0)
+    path, _ = mutant(sound[-1], tmp_path, 0)
     with h5py.File(path, "r+") as file:
         file.attrs["scene"] = "x" * (megabytes << 20)
     with pytest.raises(InputError, match="attribute scene is too long"):
@@ -161,8 +163,8 @@ def test_a_text_that_claims_gigabytes_is_refused(sound: list[Path], tmp_path: Pa
 
 
 def test_a_flip_of_any_bit_of_a_sealed_file_is_seen_before_it_is_read(sound: list[Path], tmp_path: Path) -> None:
-    content, path = sound[4].read_bytes(), tmp_path / "flipped.h5"
-    end, chance = len(without_seal(sound[4])), random.Random(7)
+    content, path = sound[-1].read_bytes(), tmp_path / "flipped.h5"
+    end, chance = len(without_seal(sound[-1])), random.Random(7)
     for place in [chance.randrange(end) for _ in range(100)] + [0, end - 1]:
         path.write_bytes(content[:place] + bytes([content[place] ^ (1 << place % 8)]) + content[place + 1 :])
         with pytest.raises(InputError, match="was damaged after it was written"):

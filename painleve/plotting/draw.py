@@ -48,10 +48,10 @@ class Recorded(Protocol):
 
 
 def draw(result: xr.Dataset | Recorded, more: Mapping[str, Drawing] | None = None) -> Figure:
-    """The figure of a dataset of this package, or of a trajectory. Raises InputError for a kind that has none, and for one
-    that does not hold what its kind does.
+    """The figure of a dataset of this package, or of a trajectory.
 
-    `more`: drawings of further kinds, such as those of a study.
+    `more`: drawings of further kinds, such as those of a study. Raises InputError for a kind that has no figure, and
+    for a dataset that does not hold what its kind does.
     """
     dataset = result if isinstance(result, xr.Dataset) else result.to_xarray()
     kind, drawings = str(dataset.attrs.get("kind", "unknown")), {**DRAWINGS, **(more or {})}

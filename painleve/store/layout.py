@@ -18,6 +18,7 @@ import xarray as xr
 
 from painleve.errors import InputError
 from painleve.notes import one_line
+from painleve.store.schema import MOST_WORDS
 
 __all__ = ["hold_to_layout"]
 
@@ -40,8 +41,9 @@ def hold_to_layout(dataset: xr.Dataset, layout: str) -> None:
 
 
 def _hold_attribute(dataset: xr.Dataset, name: str) -> None:
-    if not isinstance(dataset.attrs.get(name), str):
-        raise InputError(f"the dataset has no attribute {name}, which is text in a dataset of its kind")
+    value = dataset.attrs.get(name)
+    if not isinstance(value, str) or len(value) > MOST_WORDS:
+        raise InputError(f"the dataset has no attribute {name} that is a short text, as one of its kind has")
 
 
 def _hold_variable(name: str, variable: xr.Variable, kind: str, dims: str) -> None:
@@ -49,6 +51,8 @@ def _hold_variable(name: str, variable: xr.Variable, kind: str, dims: str) -> No
     fits = {"number": variable.dtype.kind in "iuf", "code": is_code, "text": variable.dtype.kind in "OU"}
     if not fits[kind]:
         raise InputError(f"{name} is not {'text' if kind == 'text' else f'a {kind}'}, as in a dataset of its kind")
+    if kind == "text" and any(len(str(value)) > MOST_WORDS for value in variable.values.flat):
+        raise InputError(f"{name} holds texts of more than {MOST_WORDS} characters, which no figure can show")
     expected = re.escape(dims).replace(re.escape(",..."), "(,.*)?").replace(re.escape("..."), ".*")
     if not re.fullmatch(expected, ",".join(map(str, variable.dims))):
         shown = ", ".join(map(str, variable.dims))

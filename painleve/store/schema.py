@@ -13,6 +13,7 @@ from painleve.store.origin import PROVENANCE
 __all__ = ["NOT_RUN", "check_schema", "flags", "labels_of"]
 
 NOT_RUN = 0  # the code of a point that nobody computed, so that an outer merge can fill codes and keep them integers
+MOST_WORDS = 1000  # characters of what figures may show
 
 
 def flags(labels: Sequence[str]) -> dict[str, object]:
@@ -53,6 +54,8 @@ def _check_variable(name: str, variable: xr.Variable) -> None:
         value = variable.attrs.get(attribute)
         if not (isinstance(value, str) and value):
             raise ValueError(f"variable {name} lacks {attribute}: {meaning}")
+        if len(value) > MOST_WORDS:
+            raise ValueError(f"variable {name}: its {attribute} has more than {MOST_WORDS} characters")
     if len(variable.attrs["long_name"].split()) < 3:
         raise ValueError(f"variable {name}: its long_name {variable.attrs['long_name']!r} is not a sentence")
     text = variable.dtype.kind == "O" and all(isinstance(value, str) for value in variable.values.flat)
