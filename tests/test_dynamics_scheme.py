@@ -322,7 +322,7 @@ def test_bad_input_is_refused_in_one_line(arguments: dict, words: str) -> None:
 
 
 def test_a_start_inside_the_floor_is_refused_and_a_rounded_contact_is_not() -> None:
-    with pytest.raises(InputError, match=r"not admissible: g\(q\) = 0\.1 must not be positive"):
+    with pytest.raises(InputError, match=r"not admissible: g\(q\) = 0\.1 is positive beyond rounding"):
         make_start(block(), q={"x": 0, "y": "-1/10"})
     assert abs(as_start(make_state(ROD, "stoss")).rows[0]) < 1e-15
     with pytest.raises(InputError, match="the start needs q of y"):

@@ -44,7 +44,14 @@ def add_motion(parser: argparse.ArgumentParser) -> None:
         metavar="D",
         help="contact where g >= -D (default 0, the paper's strict test)",
     )
-    parser.add_argument("--step", type=real, required=True, metavar="H", help="step size [s]")
+    parser.add_argument(
+        "--project",
+        action="store_true",
+        help="--q and --u are rounded values of a contact: start from that contact, and say how far it is",
+    )
+    parser.add_argument(
+        "--step", type=real, required=True, metavar="H", help="step size [s]; the last step ends at the final time"
+    )
     parser.add_argument("--until", type=real, required=True, metavar="T", help="final time [s]")
 
 
@@ -54,11 +61,14 @@ def read_start(options: argparse.Namespace) -> Start | State:
     from painleve.mechanics.library import load_scene
 
     if not options.q and not options.u:
+        if options.project:
+            raise InputError("--project: a --state is exactly on the contact; --project is for --q and --u")
         return read_state(options)
     if options.state:
         raise InputError("--state and --q/--u are two ways to give a start; use one")
     q, u = assignments(options.q, "--q"), assignments(options.u, "--u")
-    return make_start(load_scene(options.scene), q=q, u=u, parameters=assignments(options.parameters, "--set"))
+    parameters = assignments(options.parameters, "--set")
+    return make_start(load_scene(options.scene), q=q, u=u, parameters=parameters, project=options.project)
 
 
 def read_options(options: argparse.Namespace) -> dict[str, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,11 +16,16 @@ from painleve.mechanics.state import Number, State, resolve_parameters
 __all__ = ["Start", "as_start", "make_start"]
 
 ROUNDING = 1e-13  # of g, relative to 1 + sum |q_j dg/dq_j|: what rounding q to floats may do to a contact
+PROJECTED = 1e-2  # of g and of the normal velocity, relative to the sizes of their terms: more is no rounding
+ITERATIONS = 50
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Start:
-    """Scene, parameters and (t, q, u) as floats; `rounding` is how far from zero g may be at a contact."""
+    """Scene, parameters and (t, q, u) as floats; `rounding` is how far from zero g may be at a contact.
+
+    `projected` says what was changed to put it on the contact, where that was asked for.
+    """
 
     scene: Scene
     label: str
@@ -29,6 +34,10 @@ class Start:
     q: tuple[float, ...]
     u: tuple[float, ...]
     rounding: float
+    projected: str = ""
+
+    def __repr__(self) -> str:
+        return f"Start({self.scene.name!r}, {self.label!r})"
 
     @property
     def motion(self) -> Motion:
@@ -59,11 +68,15 @@ def make_start(
     u: Mapping[str, Number] | None = None,
     parameters: Mapping[str, Number] | None = None,
     t: float = 0.0,
+    project: bool = False,
 ) -> Start:
     """A start from values of the coordinates (all of them) and of the velocities (0 unless given), by name.
 
-    Values are numbers or exact text such as "pi/4". Raises InputError for unknown or missing names, for values out of
-    range, for g(q) > 0, and where M is not positive definite.
+    Values are numbers or exact text such as "pi/4". With `project` they are rounded values of a tangential contact, and
+    the start is that contact: the nearest configuration with g(q) = 0 and there the nearest tangential velocity, both
+    in the metric of M at the given q; `Start.projected` says by how much it was off. Raises InputError for unknown or
+    missing names, for values out of range, for g(q) > 0, where M is not positive definite, and for a projection of more
+    than a hundredth.
     """
     names = [c.name for c in scene.coordinates]
     for what, given in (("q", q), ("u", u or {})):
@@ -83,7 +96,12 @@ def make_start(
     }
     p = tuple(float(table[s.name]) for s in scene.parameters)
     label = " ".join(f"{k}={v}" for k, v in {**q, **{f"u_{k}": v for k, v in (u or {}).items()}}.items())
-    return _checked(scene, label, p, float(t), numbers["q"], numbers["u"])
+    where, q_given, u_given = _place(scene, label), numbers["q"], numbers["u"]
+    if not project:
+        return _checked(scene, label, p, float(t), q_given, u_given)
+    _check_inertia(scene, where, p, float(t), q_given, u_given)
+    q_on, u_on, projected = _onto_contact(scene, where, p, np.array(q_given), np.array(u_given))
+    return replace(_checked(scene, label, p, float(t), q_on, u_on), projected=projected)
 
 
 def as_start(start: Start | State) -> Start:
@@ -99,16 +117,71 @@ def as_start(start: Start | State) -> Start:
 def _checked(
     scene: Scene, label: str, p: tuple[float, ...], t: float, q: tuple[float, ...], u: tuple[float, ...]
 ) -> Start:
-    where = f"scene {scene.name}, start {label or 'given'}"
+    where = _place(scene, label)
+    _check_inertia(scene, where, p, t, q, u)
+    motion = make_motion(scene)
+    rows, at = motion.rows_at(q, p), motion.rows.parts
+    rounding, g = _rounding(rows[at.w_n], q), rows[at.g]
+    if g > rounding:
+        raise InputError(
+            f"{where}: not admissible: g(q) = {g:.6g} is positive beyond rounding ({rounding:.2g}, which a "
+            "contact tolerance does not change); move the body out, or put it on the contact (--project)"
+        )
+    return Start(scene=scene, label=label, p=p, t=t, q=q, u=u, rounding=rounding)
+
+
+def _place(scene: Scene, label: str) -> str:
+    return f"scene {scene.name}, start {label or 'given'}"
+
+
+def _check_inertia(
+    scene: Scene, where: str, p: tuple[float, ...], t: float, q: tuple[float, ...], u: tuple[float, ...]
+) -> None:
     if not np.isfinite([t, *p, *q, *u]).all():
         raise InputError(f"{where}: the start and the parameters must be finite numbers")
-    motion, d = make_motion(scene), scene.dimension
-    M = np.array(motion.inertia_at(q, p)).reshape(d, d)
+    M = np.array(make_motion(scene).inertia_at(q, p)).reshape(scene.dimension, scene.dimension)
     if not (np.isfinite(M).all() and np.linalg.eigvalsh(M)[0] > 0.0):
         raise InputError(f"{where}: M is not positive definite there; choose another configuration")
-    rows = motion.rows_at(q, p)
-    rounding = ROUNDING * (1.0 + sum(abs(x * w) for x, w in zip(q, rows[motion.rows.parts.w_n], strict=True)))
-    g = rows[motion.rows.parts.g]
-    if g > rounding:
-        raise InputError(f"{where}: not admissible: g(q) = {g:.6g} must not be positive; move the body out")
-    return Start(scene=scene, label=label, p=p, t=t, q=q, u=u, rounding=rounding)
+
+
+def _rounding(w_n: Sequence[float], q: Sequence[float]) -> float:
+    """How far from zero rounding of q may leave g."""
+    return ROUNDING * (1.0 + _terms(w_n, q))
+
+
+def _terms(w_n: Sequence[float], x: Sequence[float]) -> float:
+    """The sum of |x_j dg/dq_j|."""
+    return float(np.abs(np.array(x) * np.array(w_n)).sum())
+
+
+def _onto_contact(
+    scene: Scene, where: str, p: tuple[float, ...], q: np.ndarray, u: np.ndarray
+) -> tuple[tuple[float, ...], tuple[float, ...], str]:
+    """The contact that (q, u) stands for, and by how much it was off.
+
+    The nearest point of g = 0 has q - q_given = M^-1 w_n times a number, w_n at q: g is linearised until it vanishes.
+    """
+    motion, d, given = make_motion(scene), len(q), q
+    inverse = np.linalg.inv(np.array(motion.inertia_at(tuple(q), p)).reshape(d, d))
+    rows, at = motion.rows_at(tuple(q), p), motion.rows.parts
+    g, small = rows[at.g], _rounding(rows[at.w_n], q)
+    if not abs(g) <= PROJECTED * (1.0 + _terms(rows[at.w_n], q)):
+        raise InputError(f"{where}: g(q) = {g:.6g} is no rounding of a contact; --project moves a start no further")
+    for _ in range(ITERATIONS):
+        w = np.array(rows[at.w_n])
+        q = given + inverse @ w * ((rows[at.g] + w @ (q - given)) / (w @ inverse @ w))
+        rows = motion.rows_at(tuple(q), p)
+        if abs(rows[at.g]) <= small:
+            break
+    else:
+        raise InputError(f"{where}: found no configuration with g(q) = 0 near it; give one closer to the contact")
+    w = np.array(rows[at.w_n])
+    v_n = float(w @ u)
+    if not abs(v_n) <= PROJECTED * (1.0 + _terms(w, u)):
+        raise InputError(
+            f"{where}: its normal velocity {v_n:.6g} is no rounding of a tangential one; --project takes no more away"
+        )
+    u = u - inverse @ w * (v_n / (w @ inverse @ w))
+    moved = ", ".join(f"{c.name} by {x:.2g}" for c, x in zip(scene.coordinates, q - given, strict=True) if x != 0.0)
+    off = f"g was {g:.3g} and the normal velocity {v_n:.3g}; moved {moved or 'nothing'}"
+    return tuple(map(float, q)), tuple(map(float, u)), off
