@@ -23,8 +23,8 @@ def _words(text: str) -> frozenset[str]:
 
 # Beside the coordinates of a scene and their velocities, u_ and the coordinate.
 IN_TRAJECTORIES = _words(
-    "time point g gamma v_n v_t v_t1 v_t2 r_n r_t r_t1 r_t2 kinetic_energy contact_work branch change outline_x"
-    " outline_y floor"
+    "time point g gamma v_n v_t v_t1 v_t2 r_n r_t r_t1 r_t2 kinetic_energy contact_force contact_work"
+    " splitting_loss branch change outline_x outline_y floor"
 )
 # Beside the parameters and the state keys that are swept.
 IN_SWEEPS = _words(

@@ -44,6 +44,10 @@ class Proposition1:
     dissipation: np.ndarray
     norm_bound: np.ndarray
 
+    def __repr__(self) -> str:
+        worst = ", ".join(f"{name} {margin:.2g}" for name, margin in self.as_dict().items())
+        return f"Proposition1({self.count} steps; worst margins: {worst})"
+
     @property
     def count(self) -> int:
         """Steps that were checked: all of them, or the first ones where it was interrupted."""

@@ -23,8 +23,9 @@ TANGENTIAL = {"t": "tangential", "t1": "first tangential", "t2": "second tangent
 def record(start: Start, columns: Mapping[str, np.ndarray], facts: Mapping[str, str | float]) -> xr.Dataset:
     """Variables over `time`, one a coordinate since their units differ; codes count from 1, and 0 is `not_run`.
 
-    columns: t (n,), q, u (n, d), r (n, 1 + k), and over the instants branch, change, contact_work, g, gamma, v_n, v_t
-    (in space v_t1, v_t2) and kinetic_energy. facts: attributes, among them the scheme, and how it ended.
+    columns: t (n,), q, u (n, d), r (n, 1 + k), and over the instants branch, change, contact_force, contact_work,
+    splitting_loss, g, gamma, v_n, v_t (in space v_t1, v_t2) and kinetic_energy. facts: attributes, among them the
+    scheme, and how it ended.
     No step ends at the first instant, so its codes are 0. Lengths of the contact point are in metres where the scene
     says so by having an outline, in the scene's own units ("SI") otherwise.
     """
@@ -83,7 +84,12 @@ def _contact(start: Start, columns: Mapping[str, np.ndarray]) -> dict[str, xr.Va
     for j, (side, words) in enumerate({"n": "normal", **tangential}.items()):
         sentence = f"{words} contact impulse of the step that ends here"
         variables[f"r_{side}"] = _number(columns["r"][:, j], sentence, impulse)
-    variables["contact_work"] = _number(columns["contact_work"], "work of the contact impulses since the start", "J")
+    force = "normal contact force: the impulse over the time since the contact before; NaN at jumps"
+    work = "work of the contact since the start: the law's own dissipation"
+    loss = "what the scheme loses at the contact since the start: its error, O(h)"
+    variables["contact_force"] = _number(columns["contact_force"], force, "N" if start.scene.outline else "SI")
+    variables["contact_work"] = _number(columns["contact_work"], work, "J")
+    variables["splitting_loss"] = _number(columns["splitting_loss"], loss, "J")
     sentence = "branch of the contact law in the step that ends here"
     variables["branch"] = _code(columns["branch"], sentence, ContactMode)
     variables["change"] = _code(columns["change"], "change of the velocity at the contact in that step", Change)

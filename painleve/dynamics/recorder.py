@@ -55,6 +55,7 @@ class Recorder:
             branch=branch,
             change=change,
             lag=0.0,
+            integrated=True,
             ending=ending,
             detail=detail,
             statistics={**counts, **statistics},

@@ -49,17 +49,23 @@ CURVES = (
         ),
     ),
     (
+        "contact force",
+        (PlottedLine(name="contact_force", label="normal contact force", colour=PALETTE["sky"]),),
+    ),
+    (
         "energy",
         (
             PlottedLine(name="kinetic_energy", label="kinetic energy", colour=PALETTE["green"]),
             PlottedLine(name="contact_work", label="work of the contact", colour=PALETTE["black"], style="--"),
+            PlottedLine(name="splitting_loss", label="lost by the scheme", colour=GREY, style=":"),
         ),
     ),
 )
+FORCE = [label for label, _ in CURVES].index("contact force")
 
 
 def draw_trajectory(dataset: xr.Dataset) -> Figure:
-    """The body at some instants, light to dark, and three panels over time, with every jump marked by its kind."""
+    """The body at some instants, light to dark, and four panels over time, with every jump marked by its kind."""
     body = "outline_x" in dataset
     heights = ([1.7] if body else []) + [1.15] * len(CURVES)
     figure = Figure(figsize=(WIDTH, sum(heights) + 1.0), layout="constrained")
@@ -71,12 +77,21 @@ def draw_trajectory(dataset: xr.Dataset) -> Figure:
         _draw_panel(axis, dataset, label, curves)
         axis.sharex(over_time[0])
         axis.tick_params(labelbottom=axis is over_time[-1])
+    if dataset.attrs.get("steps_in_hops"):
+        _say_hops(over_time[FORCE], dataset)
     over_time[-1].set_xlabel(with_unit("time $t$", dataset["time"]))
     names = dataset.attrs["scene"].replace("_", " "), dataset.attrs["start"], dataset.attrs["scheme"].replace("_", " ")
     figure.suptitle(f"{', '.join(filter(None, names))}: {dataset.attrs['status'].replace('_', ' ')}", fontsize=8)
     figure.align_ylabels(axes)
     legend_below(figure, axes, columns=3)
     return figure
+
+
+def _say_hops(axis: Axes, dataset: xr.Dataset) -> None:
+    """Above the contact force: it is an average, for the impulses that it is made of come in hops."""
+    hops, steps = dataset.attrs["steps_in_hops"], dataset.sizes["time"] - 1
+    words = f"impulses come in hops, off the floor in {hops} of {steps} steps between contacts: each over its hop"
+    axis.set_title(words, loc="left", fontsize=7, color=GREY)
 
 
 def spaced(time: np.ndarray, count: int) -> np.ndarray:
