@@ -6,6 +6,7 @@ sample, and what they do written out for scenes with friction in space and witho
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Callable
 from functools import cache
@@ -15,10 +16,10 @@ import sympy as sp
 from dynamics_scenes import U_X, T, X, Y, block, space_block
 
 from painleve.core.motion_codes import FixedStep
-from painleve.core.stepping import Fates, SteppingMethod, Track
+from painleve.core.stepping import Fates, Rounding, SteppingMethod, Track
 from painleve.kernels.motion.compiled import make_motion
 from painleve.mechanics.friction import Segment
-from painleve.mechanics.scene import Coordinate, Parameter, Scene, make_scene
+from painleve.mechanics.scene import Coordinate, Outline, Parameter, Scene, make_scene
 
 STEP, STEPS, MEMBERS = 6e-3, 120, 8
 IN_SPACE = (FixedStep.CONTACT_DYNAMICS, FixedStep.MOREAU_JEAN)
@@ -40,6 +41,7 @@ def parabola() -> Scene:
         constraint=X**2 / 2 - Y,
         tangential_displacements=[X],
         friction=Segment(minus=mu, plus=mu),
+        outline=Outline(points=((X, X + Y + sp.Rational(1, 4)),), floor=sp.Integer(0)),
     )
 
 
@@ -63,9 +65,9 @@ def stepped(scene: Scene, run: Callable, run_members: Callable, method: Stepping
         room = (np.zeros((n, width)) for width in (d, d, 1 + max(1, scene.contact.section.dimension)))
         tracks.append(Track(*room, *(np.zeros(n, np.int8) for _ in range(3))))
         tracks[-1].q[0], tracks[-1].u[0] = q[i], u[i]
-        run(method, 0, STEP * np.arange(n), np.full(STEPS, STEP), p, tracks[-1])
+        run(method, 0, math.inf, STEP * np.arange(n), *[np.full(STEPS, STEP)] * 2, p, tracks[-1])
     fates = Fates(np.zeros(MEMBERS, np.int8), np.zeros(MEMBERS), np.zeros(MEMBERS, np.int64))
-    run_members(method, 0.0, 0.0, 1.0, STEP * np.linspace(0.3, 2.0, MEMBERS), q, u, p, fates)
+    run_members(method, Rounding(0.0, 0.0), 0.0, 1.0, STEP * np.linspace(0.3, 2.0, MEMBERS), q, u, p, fates)
     columns = zip(Track._fields, zip(*tracks, strict=True), strict=True)
     return {name: np.concatenate(parts) for name, parts in columns} | fates._asdict()
 

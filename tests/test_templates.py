@@ -30,7 +30,7 @@ def test_the_sample_is_what_is_written_for_its_scene() -> None:
     for _ in range(50):
         t, q, u, p = float(random.normal()), *(tuple(random.normal(size=n).tolist()) for n in (2, 2, 4))
         arguments = {"rows_at": (q, p), "force_at": (t, q, u, p), "motion_at": (t, q, u, p)}
-        arguments |= {"inertia_at": (q, p), "drift_at": (q, u, p)}
+        arguments |= {"inertia_at": (q, p), "drift_at": (q, u, p), "depths_at": (q, p)}
         for name, values in arguments.items():
             assert getattr(sample, name).py_func(*values) == getattr(motion, name)(*values), name
 

@@ -32,6 +32,7 @@ def run(options: argparse.Namespace) -> int:
     from tqdm import tqdm
 
     from painleve.dynamics.ensemble import run_ensemble
+    from painleve.dynamics.outline import start_notes
 
     with tqdm(total=options.count, unit=" trajectories", leave=False, delay=1.0, disable=None) as bar:
         found = run_ensemble(
@@ -54,13 +55,15 @@ def run(options: argparse.Namespace) -> int:
         print_json(facts)
         return 0
     print(f"{found.start.scene.name}, {found.start.label}: {facts['count']} trajectories; {facts['ending']}")
+    for note in start_notes(found.start):
+        print(f"  note          {note}")
     for outcome, number in found.counts.items():
         if number:
             low, high = found.interval(outcome)
             print(
-                f"  {outcome.label:12} {found.fraction(outcome):.4f} of them; "
+                f"  {outcome.label:13} {found.fraction(outcome):.4f} of them; "
                 f"95% interval of the probability [{low:.4f}, {high:.4f}]"
             )
     if found.jump_time is not None:
-        print("  jump time    min {:.9g}, median {:.9g}, max {:.9g} s".format(*found.jump_time))
+        print("  jump time     min {:.9g}, median {:.9g}, max {:.9g} s".format(*found.jump_time))
     return 0

@@ -69,6 +69,8 @@ def _print(trajectory: Trajectory) -> None:
 
     facts = trajectory.as_dict()
     print(f"{trajectory.start.scene.name}, {trajectory.start.label}: {facts['ending']}")
+    for note in trajectory.notes:
+        print(f"  note       {note}")
     print(f"  steps      {trajectory.steps}, t = {trajectory.t[-1]:.9g} s at the end")
     for jump in trajectory.jumps:
         print(f"  jump       t = {jump.time:.9g} s, {jump.kind.label}, gamma = {jump.gamma:.6g}")

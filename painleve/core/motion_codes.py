@@ -42,6 +42,7 @@ class Ending(IntEnum):
     INDETERMINATE = 6
     STEP_SIZE_UNDERFLOW = 7
     TOO_MANY_EVENTS = 8
+    THROUGH_FLOOR = 9
 
     @property
     def label(self) -> str:
@@ -62,6 +63,7 @@ _SENTENCES = {
     Ending.INDETERMINATE: "indeterminate: more than one acceleration solves the contact problem",
     Ending.STEP_SIZE_UNDERFLOW: "step size underflow: the integrator found no step that meets its tolerances",
     Ending.TOO_MANY_EVENTS: "more changes of contact mode than allowed",
+    Ending.THROUGH_FLOOR: "the outline went through the floor, which holds up the contact point alone",
 }
 
 
@@ -76,6 +78,7 @@ class MemberOutcome(IntEnum):
     FLIGHT = 5  # no contact until the end
     FAILED = 6  # numbers out of range, or a step that could not be taken
     NOT_RUN = 7  # interrupted before its turn
+    THROUGH_FLOOR = 8  # a point of the outline that the contact does not hold up went through the floor
 
     @property
     def label(self) -> str:

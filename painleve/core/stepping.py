@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-__all__ = ["ITERATIONS", "NOT_SOLVED", "Fates", "Step", "SteppingMethod", "Track"]
+__all__ = ["ITERATIONS", "NOT_SOLVED", "Fates", "Rounding", "Step", "SteppingMethod", "Track"]
 
 NOT_SOLVED = -1  # in place of a branch, where the iteration of an implicit step does not converge
 ITERATIONS = 50  # at most, of an implicit step
@@ -18,6 +18,13 @@ class SteppingMethod(NamedTuple):
     scheme: int  # painleve.core.motion_codes.FixedStep
     theta: float  # of the theta-method
     tolerance: float  # contact is where g(q) >= -tolerance
+
+
+class Rounding(NamedTuple):
+    """What rounding may do at the start of a motion."""
+
+    g: float  # to g at a contact
+    depth: float  # to how far a point of the outline is below the floor
 
 
 class Step(NamedTuple):

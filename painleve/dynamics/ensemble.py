@@ -14,9 +14,10 @@ import numpy as np
 
 from painleve.core.ball_maps import uniform_ball, uniforms_needed
 from painleve.core.motion_codes import Ending, MemberOutcome
-from painleve.core.stepping import Fates, SteppingMethod
+from painleve.core.stepping import Fates, Rounding, SteppingMethod
 from painleve.core.streams import uniform_block
 from painleve.dynamics.grid import check_step, check_until
+from painleve.dynamics.outline import depth_rounding, start_notes
 from painleve.dynamics.scheme import Stepped
 from painleve.dynamics.schemes import scheme_for
 from painleve.dynamics.start import Start, as_start
@@ -36,12 +37,15 @@ NORMAL_QUANTILE = 1.959963984540054  # of 0.975
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Members:
-    """Every member, where asked for: step size, outcome (codes of Outcome), its time, and the number of steps."""
+    """Every member, where asked for: step size, outcome (codes of MemberOutcome), its time, and the number of steps."""
 
     step: np.ndarray
     outcome: np.ndarray
     time: np.ndarray
     steps: np.ndarray
+
+    def __repr__(self) -> str:
+        return f"Members({len(self.step)})"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -62,6 +66,11 @@ class Ensemble:
     ending: Ending
     members: Members | None = None
 
+    def __repr__(self) -> str:
+        shares = ", ".join(f"{o.label} {self.fraction(o):.4g}" for o, number in self.counts.items() if number)
+        name = f"{self.start.scene.name!r}, {self.start.label!r}, {self.scheme}"
+        return f"Ensemble({name}: {self.count} members: {shares or 'none'}; {self.ending.label})"
+
     @property
     def count(self) -> int:
         """Members that ran."""
@@ -80,6 +89,7 @@ class Ensemble:
         return {
             "status": self.ending.label,
             "ending": self.ending.sentence,
+            "notes": list(start_notes(self.start)),
             "count": self.count,
             "fractions": {o.label: self.fraction(o) for o in self.counts},
             "intervals": {o.label: list(self.interval(o)) for o in self.counts},
@@ -142,7 +152,8 @@ class _Task:
         h, q, u = self.draw(first, n)
         fates = Fates(outcome=np.empty(n, np.int8), time=np.empty(n), steps=np.empty(n, np.int64))
         s = self.start
-        s.motion.run_members(self.method, s.rounding, s.t, self.until, h, q, u, s.p, fates)
+        rounding = Rounding(s.rounding, depth_rounding(s))
+        s.motion.run_members(self.method, rounding, s.t, self.until, h, q, u, s.p, fates)
         return first, Members(step=h, **fates._asdict())
 
     def draw(self, first: int, n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -243,7 +254,7 @@ def _check_difference(task: _Task) -> None:
 def _collect(task: _Task, threads: int | None, keep: bool, progress: Callable[[int], None] | None) -> Ensemble:
     thread_count(threads)
     tally, ending = _EnsembleTally(), Ending.REACHED_END
-    width = (task.until or 1.0) / (BINS - 1)  # a jump may come up to one step after the end: the last bin
+    width = (task.until or 1.0) / (BINS - 1)  # the end itself is in the last bin
     kept = _empty_members(task.count) if keep else None
     lanes = as_they_finish(task.run, range(0, task.count, task.lane), threads)
     try:

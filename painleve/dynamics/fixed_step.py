@@ -10,6 +10,7 @@ from painleve.core.codes import ContactMode
 from painleve.core.motion_codes import Ending
 from painleve.core.stepping import SteppingMethod, Track
 from painleve.dynamics.grid import TimeGrid
+from painleve.dynamics.outline import allowed_depth, where_through
 from painleve.dynamics.sections.listed import dynamics_of
 from painleve.dynamics.start import Start
 from painleve.dynamics.trajectory import Trajectory
@@ -40,17 +41,18 @@ def run_fixed_step(
 
     `progress` hears of the time covered after each chunk; the steps do not depend on how they are cut into chunks.
     """
-    n, track = len(grid.h), empty_track(start, len(grid.h))
-    done, since, ending = 0, 0, Ending.REACHED_END
+    n, track, allowed = len(grid.h), empty_track(start, len(grid.h)), allowed_depth(start)
+    done, since, ending, lengths = 0, 0, Ending.REACHED_END, (grid.h, grid.given)
     try:
         while done < n and ending is Ending.REACHED_END:
             rest = slice(done, min(done + CHUNK, n) + 1)
-            part, h = Track(*(column[rest] for column in track)), grid.h[done : done + CHUNK]
-            taken, status, since = start.motion.run(method, since, grid.t[rest], h, start.p, part)
+            part, h, given = Track(*(column[rest] for column in track)), *(x[done : done + CHUNK] for x in lengths)
+            taken, status, since = start.motion.run(method, since, allowed, grid.t[rest], h, given, start.p, part)
             done, ending = done + taken, Ending(status)
             progress(float(grid.t[done] - grid.t[done - taken]))
     except KeyboardInterrupt:
         ending = Ending.INTERRUPTED
+    detail = where_through(start, grid.t[done], track.q[done]) if ending is Ending.THROUGH_FLOOR else ""
     kept = Track(*(column[: done + 1] for column in track))
     statistics = {b.label: int((kept.branch[1:] == b).sum()) for b in ContactMode}
     if dynamics_of(start.scene.contact).counts_solutions:
@@ -67,5 +69,6 @@ def run_fixed_step(
         change=kept.change,
         lag=lag,
         ending=ending,
+        detail=detail,
         statistics=statistics,
     )

@@ -94,11 +94,27 @@ class Outline:
     """What a picture of the body needs, in metres: a polyline of points (x, y), and the height of the floor below it.
 
     Points are expressions in the coordinates and the parameters, the height in the parameters alone. A scene with an
-    outline has minus the height of the contact point over that floor as its g.
+    outline has minus the height of the contact point over that floor as its g. `contact_is_lowest`: the contact is at
+    the lowest point of the body in every configuration, as it moves over a round one.
     """
 
     points: tuple[tuple[sp.Expr, sp.Expr], ...]
     floor: sp.Expr
+    contact_is_lowest: bool = False
+
+    def depths(self, constraint: sp.Expr) -> dict[int, sp.Expr]:
+        """How far points are below the floor, by their place in `points`: of those that the contact does not hold up.
+
+        Where the scene touches the floor, a depth is g identically; of points at one height the first is here.
+        """
+        depths: dict[int, sp.Expr] = {}
+        if self.contact_is_lowest:
+            return depths
+        for i, (_, y) in enumerate(self.points):
+            depth = sp.expand(self.floor - y)
+            if sp.expand(depth - constraint) != 0 and depth not in depths.values():
+                depths[i] = depth
+        return depths
 
     def __post_init__(self) -> None:
         points = tuple((sp.sympify(x, strict=True), sp.sympify(y, strict=True)) for x, y in self.points)

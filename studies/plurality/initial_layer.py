@@ -82,7 +82,7 @@ def _right_velocities(start: Start, h: float, eps: float, count: int, seed: int)
     t, h_all, right = h * np.arange(n + 1), np.full(n, h), np.empty((count, d))
     for i in range(count):
         track.q[0], track.u[0] = start.q + dq[:, i], start.u + du[:, i]
-        _, ending, _ = start.motion.run(method, 0, t, h_all, start.p, track)
+        _, ending, _ = start.motion.run(method, 0, math.inf, t, h_all, h_all, start.p, track)
         if Ending(ending) is not Ending.REACHED_END:
             raise InputError(f"start {start.label}: a step of {h:g} failed: {Ending(ending).sentence}")
         right[i] = track.u[n]

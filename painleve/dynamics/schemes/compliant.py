@@ -20,6 +20,7 @@ from painleve.core.motion_codes import Ending
 from painleve.dynamics.arc import ArcPoint, Dense, Event, follow
 from painleve.dynamics.grid import TimeGrid
 from painleve.dynamics.modes import ContactPoint
+from painleve.dynamics.outline import allowed_depth, depth_through, where_through
 from painleve.dynamics.recorder import Recorder
 from painleve.dynamics.scheme import Integrated, Progress
 from painleve.dynamics.start import Start
@@ -52,6 +53,8 @@ class _CompliantRun:
         self.recorder, self.evaluations, self.arcs = Recorder(start), 0, 0
         self.place = self.recorder.last
         self.closed = self.closure(*self.place) > 0.0
+        allowed = allowed_depth(start)
+        self.outline = Event(lambda t, y: allowed - depth_through(start, y[: self.d]))
         self.longest = float(grid.h.max()) if len(grid.h) else math.inf
 
     def point(self, t: float, y: np.ndarray) -> ContactPoint:
@@ -78,6 +81,8 @@ class _CompliantRun:
             self.record(np.array([self.place.t]), self.place.y[None, :])
         if ending is Ending.STEP_SIZE_UNDERFLOW:
             detail = f"at t = {self.place.t:.9g}"
+        if ending is Ending.THROUGH_FLOOR:
+            detail = where_through(self.start, self.place.t, self.place.y[: self.d])
         counts = {"evaluations": self.evaluations, "arcs": self.arcs}
         return self.recorder.trajectory(NAME, dict(self.options), ending, detail, counts)
 
@@ -94,11 +99,13 @@ class _CompliantRun:
                 atol=self.options["atol"],
                 max_step=self.longest,
             )
-            switched = follow(solver, [Event(lambda t, y: sign * self.closure(t, y))], self.accept)
+            switched = follow(solver, [Event(lambda t, y: sign * self.closure(t, y)), self.outline], self.accept)
         self.evaluations, self.arcs = self.evaluations + int(solver.nfev), self.arcs + 1
         if solver.status == "failed":
             return Ending.STEP_SIZE_UNDERFLOW
-        if switched is not None:
+        if switched == 1:
+            return Ending.THROUGH_FLOOR
+        if switched == 0:
             self.closed = not self.closed
         return Ending.REACHED_END if self.arcs <= MOST_ARCS else Ending.TOO_MANY_EVENTS
 

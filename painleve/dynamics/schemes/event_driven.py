@@ -18,6 +18,7 @@ from painleve.core.motion_codes import Change, Ending
 from painleve.dynamics.arc import ArcPoint, Dense, Event, follow
 from painleve.dynamics.grid import TimeGrid
 from painleve.dynamics.modes import ContactPoint, Mode, closed_modes
+from painleve.dynamics.outline import allowed_depth, depth_through, where_through
 from painleve.dynamics.recorder import Recorder
 from painleve.dynamics.scheme import Integrated, Progress
 from painleve.dynamics.start import Start
@@ -42,7 +43,7 @@ class _EventDrivenRun:
     def __init__(self, start: Start, grid: TimeGrid, options: Mapping[str, float], progress: Progress) -> None:
         self.start, self.grid, self.options, self.progress = start, grid, options, progress
         self.d, self.recorder, self.events = len(start.q), Recorder(start), 0
-        self.place, self.mode = self.recorder.last, Mode.FREE
+        self.place, self.mode, self.allowed = self.recorder.last, Mode.FREE, allowed_depth(start)
 
     @property
     def t(self) -> float:
@@ -75,7 +76,7 @@ class _EventDrivenRun:
 
     def arc(self, mode: Mode) -> Mode:
         """Integrate to the next event or the end; returns the next mode."""
-        events, end = self.mode_events(mode), float(self.grid.t[-1])
+        events, end = {**self.mode_events(mode), **self.outline_event()}, float(self.grid.t[-1])
         with np.errstate(all="ignore"):
             solver = DOP853(
                 lambda t, y: self.rate(t, y, mode),
@@ -142,6 +143,15 @@ class _EventDrivenRun:
             Event(lambda t, y: -self.point(t, y).beta_n): self.lift_off,
             Event(lambda t, y: self.point(t, y).edge(mode)): self.lose_edge,
         }
+
+    def outline_event(self) -> dict[Event, Callable[[], Mode]]:
+        """The outline must not go through the floor."""
+        if self.allowed == math.inf:
+            return {}
+        return {Event(lambda t, y: self.allowed - depth_through(self.start, y[: self.d])): self.fall_through}
+
+    def fall_through(self) -> Mode:
+        raise _Stop(Ending.THROUGH_FLOOR, where_through(self.start, self.t, self.y[: self.d]))
 
     @property
     def at_rest(self) -> float:

@@ -30,6 +30,7 @@ class Motion:
     inertia_at: Callable[..., tuple[float, ...]]
     force_at: Callable[..., tuple[float, ...]]
     drift_at: Callable[..., tuple[float, ...]]
+    depths_at: Callable[..., tuple[float, ...]]
     step: Callable[..., Step]
     run: Callable[..., tuple[int, int, int]]
     run_members: Callable[..., None]
@@ -56,6 +57,7 @@ def make_motion(scene: Scene) -> Motion:
         inertia_at=module.inertia_at,
         force_at=module.force_at,
         drift_at=module.drift_at,
+        depths_at=module.depths_at,
         step=module.step,
         run=module.run,
         run_members=module.run_members,

@@ -1,7 +1,8 @@
 """What a scene defines for its motion, for one small scene: the templates run on it where nothing is compiled.
 
 A point of mass 1 in the plane slides with friction on the parabola y = x^2/2: g = x^2/2 - y, w_n = (-x, 1), H = (1, 0).
-Its parameters p are mu, the weight, a drag on u_x, and a force `beat` t along x.
+Its parameters p are mu, the weight, a drag on u_x, and a force `beat` t along x. A point of its outline is at
+the height y + x + 1/4 over the floor 0.
 
 Tuples hold the rows (painleve.core.rows), vectors of D components, and matrices row by row.
 """
@@ -42,3 +43,9 @@ def inertia_at(q, p):
 def drift_at(q, u, p):
     """What curvature adds to the contact accelerations W^T du/dt: u . (dW/dq) u, of the normal and of the tangent."""
     return (-u[0] * u[0], 0.0)
+
+
+@jit
+def depths_at(q, p):
+    """How far below the floor the points of the outline are that the contact does not hold up; -inf without any."""
+    return (-q[0] - q[1] - 1.0 / 4.0,)

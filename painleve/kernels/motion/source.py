@@ -32,6 +32,7 @@ def motion_source(scene: Scene, rows: MotionRows) -> str:
         _function(scene, "inertia_at", "q, p", [list(M)]),
         _function(scene, "force_at", "t, q, u, p", [list(f)]),
         _function(scene, "drift_at", "q, u, p", [_drifts(scene)]),
+        _function(scene, "depths_at", "q, p", [_depths(scene)]),
     ]
     section = kernels_of(scene.contact)
     constants = section.motion_constants({name: i for i, name in enumerate(rows.names)})
@@ -48,6 +49,12 @@ def _drifts(scene: Scene) -> list[sp.Expr]:
     columns = [sp.Matrix([-sp.diff(scene.contact.constraint, x) for x in scene.q])]
     columns += [turning[:, j] for j in range(turning.cols)]
     return [(u.T * column.jacobian(scene.q) * u)[0, 0] for column in columns]
+
+
+def _depths(scene: Scene) -> list[sp.Expr]:
+    """How far below the floor the points of the outline are that the contact does not hold up; -inf without any."""
+    depths = scene.outline.depths(scene.contact.constraint) if scene.outline else {}
+    return list(depths.values()) or [-sp.oo]
 
 
 def _function(scene: Scene, name: str, arguments: str, tuples: Sequence[Sequence[sp.Expr]]) -> str:

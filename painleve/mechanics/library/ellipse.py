@@ -65,7 +65,7 @@ SCENE = make_scene(
     ),
     placement={"x": sp.Integer(0), "y": support, "theta": theta},
     velocity={"x": slip - omega * support, "y": omega * slope, "theta": omega},
-    outline=Outline(points=tuple(outline), floor=sp.Integer(0)),
+    outline=Outline(points=tuple(outline), floor=sp.Integer(0), contact_is_lowest=True),
     states=(
         NamedState(
             name="sliding",
