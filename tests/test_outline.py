@@ -86,7 +86,7 @@ def test_what_is_decided_above_the_floor_is_not_touched_by_it() -> None:
 
 def test_contact_points_are_told_from_the_others_exactly() -> None:
     watched = {
-        name: list(scene.outline.depths(scene.constraint))
+        name: list(scene.outline.depths(scene.contact.constraint))
         for name in ("slender_rod", "worn_tip_rod", "two_link_arm", "planar_body", "ellipse")
         if (scene := load_scene(name)).outline is not None
     }

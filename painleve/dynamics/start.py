@@ -144,12 +144,12 @@ def _check_inertia(
         raise InputError(f"{where}: M is not positive definite there; choose another configuration")
 
 
-def _rounding(w_n: Sequence[float], q: Sequence[float]) -> float:
+def _rounding(w_n: Sequence[float], q: Sequence[float] | np.ndarray) -> float:
     """How far from zero rounding of q may leave g."""
     return ROUNDING * (1.0 + _terms(w_n, q))
 
 
-def _terms(w_n: Sequence[float], x: Sequence[float]) -> float:
+def _terms(w_n: Sequence[float] | np.ndarray, x: Sequence[float] | np.ndarray) -> float:
     """The sum of |x_j dg/dq_j|."""
     return float(np.abs(np.array(x) * np.array(w_n)).sum())
 
