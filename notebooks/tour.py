@@ -39,7 +39,7 @@ painleve.draw(sweep_members(rod, eps=[1e-1], states=["paradox", "critical"]))
 
 # %%
 derivation = painleve.derive(rod)
-print(rod.inertia, derivation.a.simplify(), derivation.b.simplify(), sep="\n")
+print(rod.inertia, derivation.a.simplify(), derivation.couplings[0].simplify(), sep="\n")
 
 # %%
 painleve.draw(map_gamma(rod, states=[state.name for state in rod.states]))

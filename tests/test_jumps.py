@@ -82,7 +82,8 @@ class Stop:
         """What the step that stops it is, after so many steps without contact."""
         start = as_start(make_state(ROD, keys=self.keys, parameters={"mu": self.mu}))
         track, method = empty_track(start, 1), SteppingMethod(int(FixedStep.CONTACT_DYNAMICS), 0.0, 1e-6)
-        _, _, since = start.motion.run(method, flight, np.array([0.0, self.h]), np.array([self.h]), start.p, track)
+        t, h = np.array([0.0, self.h]), np.array([self.h])
+        _, _, since = start.motion.run(method, flight, math.inf, t, h, h, start.p, track)
         assert since == 0
         assert track.branch[1] == ContactMode.STICK
         rows, _, _ = start.tabulate(np.zeros(1), track.q[1:], track.u[1:])

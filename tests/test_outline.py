@@ -105,7 +105,7 @@ def test_no_point_of_the_ellipse_is_below_its_contact() -> None:
     scene, random = load_scene("ellipse"), np.random.default_rng(0)
     assert scene.outline is not None
     depths = [-y for _, y in scene.outline.points]
-    function = sp.lambdify([*scene.q, *scene.p], [scene.constraint, *depths])
+    function = sp.lambdify([*scene.q, *scene.p], [scene.contact.constraint, *depths])
     for _ in range(200):
         m, inertia, mu, gravity = 1.0, 1.0, 0.5, 9.81
         q, axes = random.normal(0.0, 2.0, 3), random.uniform(0.05, 3.0, 2)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 import pytest
-from painleve.core.branch_excess import REACH
+from painleve.core.excess import REACH
 
 from painleve.asymptotics import ray_search
 from painleve.asymptotics.local import make_local_problem

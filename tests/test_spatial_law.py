@@ -213,9 +213,8 @@ def test_friction_that_vanishes_beside_one_opposes_the_slip_of_a_frictionless_im
         L, v = rng.normal(size=(3, 3)), rng.normal(size=3) - np.array([3.0, 0.0, 0.0])
         G = L @ L.T + 0.1 * np.eye(3)
         b, C = mu * G[0, 1:], mu * (mu * G[1:, 1:])
-        r = disc_impulse(
-            G[0, 0], G[0, 0] - np.hypot(*b), b[0], b[1], C[0, 0], C[0, 1], C[1, 1], v[0], mu * v[1], mu * v[2]
-        )
+        contact = Delassus(G[0, 0], b[0], b[1], C[0, 0], C[0, 1], C[1, 1])
+        r = disc_impulse(contact, G[0, 0] - np.hypot(*b), (v[0], mu * v[1], mu * v[2]))
         slip = v[1:] - G[0, 1:] * (v[0] / G[0, 0])
         expected = -v[0] / G[0, 0] * np.array([1.0, *(-slip / np.linalg.norm(slip))])
         np.testing.assert_allclose(r[:3], expected, rtol=1e-9, atol=1e-12)
