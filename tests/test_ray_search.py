@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import partial
 
 import pytest
-from painleve.core.excess import REACH
 
 from painleve.asymptotics import ray_search
 from painleve.asymptotics.local import make_local_problem
@@ -14,6 +13,7 @@ from painleve.asymptotics.ray_search import RaySearch
 from painleve.asymptotics.sample import KINDS
 from painleve.asymptotics.search import PlaneSearch
 from painleve.core.codes import ContactMode
+from painleve.core.excess import REACH
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import make_state
 from painleve.theory.limit_set import limit_set
