@@ -8,12 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from figure_checks import assert_no_two_entries_share_a_mark
 from study_runs import QUIET
 
 from painleve.errors import InputError
 from painleve.mechanics.library import load_scene
 from painleve.mechanics.state import State, make_state
+from painleve.plotting import draw
 from painleve.theory.limit_set import limit_set
+from studies.laws.figures import DRAWINGS
 from studies.laws.measure import measure_laws
 from studies.laws.report import report
 from studies.laws.two_laws import map_laws
@@ -68,6 +71,34 @@ def test_coulomb_s_jumps_end_where_sticking_leaves_the_cone_of_the_rod(maps: xr.
     inside = mu > mu_c
     reach = np.arctan(4.0 * np.sqrt(np.where(inside, mu**2 - mu_c**2, 0.0)) / (mu_c * C_11 - coupling))
     np.testing.assert_array_equal(tangential["solutions"] > 1, inside & (np.abs(angle) <= reach))
+
+
+def test_the_bands_of_several_solutions_end_where_the_closed_forms_say(maps: xr.Dataset) -> None:
+    """Tangential: two solutions up to arccos(mu_c/mu), three from there to where sticking leaves the cone, as above."""
+    mu_c, C_11, coupling = 4.0 / 3.0, 1.0 + 3.0 * 4.0 / 5.0, 3.0 * 2.0 / 5.0
+    tangential = maps.isel(state=1).sel(approach=0.0)
+    mu = tangential["friction"].values
+    critical = mu > mu_c
+    reach = np.arctan(4.0 * np.sqrt(mu[critical] ** 2 - mu_c**2) / (mu_c * C_11 - coupling))
+    two, three = (tangential["several"].sel(number=n).values[:, critical] for n in (2, 3))
+    np.testing.assert_allclose(two, [np.zeros(critical.sum()), np.arccos(mu_c / mu[critical])], atol=1e-7)
+    np.testing.assert_allclose(three, [np.arccos(mu_c / mu[critical]), reach], atol=1e-7)
+    assert np.isnan(tangential["several"].values[..., ~critical]).all()
+
+
+def test_the_picture_names_angles_by_hand_defines_b_and_has_whole_bands(maps: xr.Dataset) -> None:
+    figure = draw(maps, DRAWINGS)
+    assert_no_two_entries_share_a_mark(figure)
+    said = figure.get_suptitle() + "".join(axis.get_title() for axis in figure.axes)
+    assert "$b = H" in said
+    assert "arctan(2)" in said
+    assert "=atan" not in said
+    impact = maps.isel(state=1).sel(approach=-0.01)
+    low, high = impact["several"].sel(number=3).values
+    rows = np.flatnonzero(np.isfinite(low))
+    assert rows.size > 10
+    assert np.array_equal(rows, np.arange(rows[0], rows[-1] + 1))  # no gap from the first row to the last
+    assert (low[rows] < high[rows]).all()
 
 
 @pytest.mark.parametrize(("heading", "mu"), [("pi", "2"), ("2*pi/3", "3/2"), ("3*pi/4", "3/2"), ("pi/2", "3")])

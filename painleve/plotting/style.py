@@ -24,6 +24,7 @@ __all__ = [
     "THEOREM_MARKS",
     "Mark",
     "entitle",
+    "expressed",
     "label_outside",
     "legend_below",
     "legend_under",
@@ -136,6 +137,18 @@ def symbol(name: str) -> str:
     letter, index = found["letter"], found["low"] or found["number"]
     base = f"\\{GREEK[letter]}" if letter in GREEK else letter if len(letter) == 1 else f"\\mathrm{{{letter}}}"
     return f"${base}{f'_{{{index}}}' if index else ''}$"
+
+
+def expressed(text: str) -> str:
+    """The label of a state that is given by its keys, such as "theta=atan(2) mu=4/3", as it is written by hand."""
+    words = (word.partition("=") for word in text.split())
+    return ", ".join(f"{symbol(n)} = {_written(value)}" if equals else spoken(n) for n, equals, value in words)
+
+
+def _written(value: str) -> str:
+    for code, sign in (("*pi", "π"), ("pi", "π"), ("atan(", "arctan("), ("sqrt(", "√("), ("**", "^"), ("*", " ")):
+        value = value.replace(code, sign)
+    return raised(value)
 
 
 def raised(unit: str) -> str:

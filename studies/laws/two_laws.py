@@ -18,6 +18,7 @@ from painleve.mechanics.state import State
 from painleve.store import provenance
 from painleve.sweep.variables import text
 from painleve.theory.coulomb.problem import problem_at
+from studies.laws.bands import NUMBERS, bands
 
 __all__ = ["map_laws"]
 
@@ -49,12 +50,14 @@ def map_laws(
     shape = (len(states), len(approaches), len(mu), directions)
     counts, sticks, apart = np.zeros(shape, dtype=np.int64), np.zeros(shape, dtype=np.int64), np.zeros((*shape, 2))
     critical = np.empty(len(states))
+    several = np.empty((len(states), len(approaches), len(NUMBERS), 2, len(mu)))
     for i, state in enumerate(states):
         G, Y, critical[i] = _local(state)
         b = G[0, 1:] / np.linalg.norm(G[0, 1:])
         slips = np.outer(np.cos(angles), b) + np.outer(np.sin(angles), [-b[1], b[0]])
         for j, v_n in enumerate(approaches):
             compare_laws(G, Y, float(v_n), slips, mu, counts[i, j], sticks[i, j], apart[i, j])
+            several[i, j] = bands(G, Y, float(v_n), mu)
     unit = velocity_unit(scene)
 
     def variable(dims: tuple[str, ...], values: np.ndarray, sentence: str, units: str = "1") -> xr.Variable:
@@ -70,6 +73,12 @@ def map_laws(
             "sticking": variable(dims, sticks, "number of those that stick"),
             "nearest": variable(dims, apart[..., 0], "distance of law (7) from Coulomb's nearest solution", unit),
             "farthest": variable(dims, apart[..., 1], "distance of Coulomb's farthest solution from law (7)", unit),
+            "several": variable(
+                ("state", "approach", "number", "edge", "friction"),
+                several,
+                "least and largest angle against b with that number of solutions; NaN for none",
+                "rad",
+            ),
             "critical_friction": variable(("state",), critical, "critical coefficient of friction mu_c = a/|b|"),
             "driven": variable(over, half_angle, "friction would drive slips up to this angle from b", "rad"),
             "projected": variable(over, half_angle + np.pi / 2.0, "law (7) has a jump up to this angle from b", "rad"),
@@ -78,6 +87,7 @@ def map_laws(
             "state": text(["state"], [state.label for state in states], "label of the configuration"),
             "approach": variable(("approach",), np.array(approaches, dtype=float), "normal velocity v_n over the slip"),
             "friction": variable(("friction",), mu, "coefficient of friction"),
+            "number": variable(("number",), np.array(NUMBERS), "number of solutions of Coulomb's law"),
             "direction": variable(("direction",), angles, "angle of the slip against b", "rad"),
         },
         {

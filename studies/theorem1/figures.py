@@ -27,7 +27,7 @@ KINDS = (
 
 def draw_theorem1(dataset: xr.Dataset) -> Figure:
     """Above e(A_eps, A), from the ends of A in the isolated branch; below the least known bound on e(A, A_eps)."""
-    figure, axes = panels(2 * len(BRANCHES), columns=len(BRANCHES), height=2.1, shared=True)
+    figure, axes = panels(2 * len(BRANCHES), columns=len(BRANCHES), height=2.1)
     above, below = axes[: len(BRANCHES)], axes[len(BRANCHES) :]
     branches = labels_of(dataset["theorem_branch"])
     for upper, lower, branch in zip(above, below, BRANCHES, strict=True):
@@ -38,11 +38,15 @@ def draw_theorem1(dataset: xr.Dataset) -> Figure:
         _draw_guides(upper, dataset)
         if branch == "critical_isolated":
             _draw_halves(lower, chosen)
+            upper.annotate("from the ends of $A$", (0.04, 0.93), xycoords="axes fraction", fontsize=7.0)
+        upper.tick_params(labelbottom=False)
         lower.set_xlabel("radius $\\varepsilon$")
     above[0].set_ylabel("$e(A_\\varepsilon, A)$,\nlower bounds")
     below[0].set_ylabel("$e(A, A_\\varepsilon)$,\nupper bounds")
-    above[-1].set_title(f"{above[-1].get_title()}\n$e(A_\\varepsilon, \\{{u^-, \\tilde u\\}})$ above")
-    above[0].set_ylim(bottom=LOWEST)
+    for axis in axes:
+        axis.set_xlim(below[-1].get_xlim())
+    _share(above, float(dataset["to_limit"].max()), 0.03 * float(dataset["eps"].min()))
+    _share(below, float(dataset["of_limit"].max()), LOWEST)
     figure.suptitle(
         f"Theorem 1 at {dataset.sizes['case']} states of {len(dataset.attrs['scene'].split(', '))} scenes; "
         "distances in the units of each scene",
@@ -52,6 +56,13 @@ def draw_theorem1(dataset: xr.Dataset) -> Figure:
     return figure
 
 
+def _share(axes: list[Axes], top: float, bottom: float) -> None:
+    """One range for a row of panels."""
+    for axis in axes:
+        axis.set_ylim(bottom, 5.0 * top)
+        axis.tick_params(labelleft=axis is axes[0])
+
+
 def _draw_lines(axis: Axes, chosen: xr.Dataset, name: str) -> None:
     axis.set_xscale("log")
     axis.set_yscale("log")
@@ -59,6 +70,10 @@ def _draw_lines(axis: Axes, chosen: xr.Dataset, name: str) -> None:
         for one in chosen[name].values[belongs(chosen["tangents"].values)]:
             shown = np.where(one > LOWEST, one, np.nan)
             axis.plot(chosen["eps"], shown, color=colour, linestyle=style, linewidth=0.8, alpha=0.7, label=label)
+    below = int((chosen[name].values <= LOWEST).all(axis=1).sum())
+    if below:
+        said = f"at most $10^{{{round(np.log10(LOWEST))}}}$ at {below} states"
+        axis.annotate(said, (0.04, 0.04), xycoords="axes fraction", fontsize=7.0)
 
 
 def _draw_guides(axis: Axes, dataset: xr.Dataset) -> None:
